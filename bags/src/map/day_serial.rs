@@ -9,15 +9,22 @@ const MATLAB_EPOCH: f64 = 719_529.0;
 /// Longest step between rows, days: 1.7 s. As seconds, it would be 50 kHz, hours after the start.
 const LONGEST_STEP: f64 = 2e-5;
 
-/// Whether numbers without a unit can only be days: they are in the range of dates, and their steps would be absurd as seconds.
+/// Longest step between times of day, days: 86 ms. As seconds, it would be 1 MHz.
+const LONGEST_STEP_OF_DAY: f64 = 1e-6;
+
+/// Whether numbers without a unit can only be days: they are in the range of dates or within a day, and their steps would be absurd as
+/// seconds.
 pub(super) fn are_days(times: &[f64]) -> bool {
     let first = times.iter().copied().find(|time| time.is_finite());
-    if !first.is_some_and(|first| SPREADSHEET.contains(&first) || MATLAB.contains(&first)) {
-        return false;
-    }
+    let longest = match first {
+        Some(first) if SPREADSHEET.contains(&first) || MATLAB.contains(&first) => LONGEST_STEP,
+        // A time of day; from zero on, it may be anything.
+        Some(first) if first > 0.0 && first < 1.0 => LONGEST_STEP_OF_DAY,
+        _ => return false,
+    };
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
     let Some(middle) = steps.len().checked_sub(1).map(|last| last / 2) else { return false };
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1 < LONGEST_STEP
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1 < longest
 }
 
 /// The number of 1 January 1970, if a number of days is a date.
@@ -46,6 +53,7 @@ mod tests {
             // 20 November 2023.
             assert_eq!(epoch(first).map(|epoch| (first - epoch).floor()), Some(19_681.0));
         }
+        assert!(are_days(&rows(0.417, 2.0 * millisecond)) && !are_days(&rows(0.417, 1e-5)));
         assert!(!are_days(&rows(0.0, millisecond)) && !are_days(&[45_250.0]) && !are_days(&[]));
         assert_eq!(epoch(0.5), None);
     }

@@ -4,7 +4,10 @@ use super::track::Track;
 
 /// Numbers that loggers, converters and data formats write in the place of a reading. -999 and 9999 are habits of loggers, the limits
 /// of integers come from converters and field buses, 9.91e37 is that of SCPI and 9.96921e36 that of netCDF.
-const CODES: [f64; 24] = [
+const CODES: [f64; 30] = [
+    -99.0,
+    -99.9,
+    -99.99,
     -999.0,
     -999.9,
     -999.99,
@@ -16,6 +19,9 @@ const CODES: [f64; 24] = [
     999.9,
     9999.0,
     9999.9,
+    9999.99,
+    -9999.99,
+    999.99,
     99_999.0,
     999_999.0,
     32_767.0,
@@ -75,9 +81,18 @@ pub(super) fn remove(samples: &mut [(i64, f64)]) -> Vec<FaultCode> {
     codes
 }
 
+/// As [`remove`], of values without stamps.
+pub(super) fn remove_from(values: &mut [f64]) {
+    if values.iter().any(|value| is_code(*value)) {
+        let mut samples: Vec<(i64, f64)> = values.iter().map(|value| (0, *value)).collect();
+        remove(&mut samples);
+        values.iter_mut().zip(samples).for_each(|(value, (_, cleaned))| *value = cleaned);
+    }
+}
+
 fn is_code(value: f64) -> bool {
     // Most readings need no look at the list.
-    value.abs() >= 999.0 && (value.abs() >= NO_READING || CODES.iter().any(|code| is_near(*code, value)))
+    value.abs() >= 99.0 && (value.abs() >= NO_READING || CODES.iter().any(|code| is_near(*code, value)))
 }
 
 fn is_near(code: f64, value: f64) -> bool {

@@ -39,6 +39,12 @@ pub(super) fn read_table(
         let example = report.notes.iter().find_map(|note| note.strip_prefix(&own)).map(str::to_string);
         return Err(MapError::NoTimes { path: path.to_path_buf(), column: clock.name, example }.into());
     };
+    let rows = clock.stamps.iter().flatten().count();
+    if first == last && rows > 1 {
+        // A date alone, or a time to the minute.
+        let example = Some(format!("all {rows} rows have the same"));
+        return Err(MapError::NoTimes { path: path.to_path_buf(), column: clock.name, example }.into());
+    }
     let joined = joined::timed(joined, map, Span { first, last, dating: clock.dating }, &mut report)?;
     let (clock_name, dating) = (clock.name.clone(), clock.dating);
     let mut tables = vec![TimedTable::of(None, table, clock, &map.clock, 0)];
@@ -56,7 +62,6 @@ pub(super) fn read_table(
     if without_time > 0 {
         report.notes.push(format!("{without_time} rows without time were left out"));
     }
-    let rows = tables[0].stamps.iter().flatten().count();
     report.messages.insert("rows".to_string(), rows as u64);
     if stamps.len() < rows {
         report.notes.push(format!(

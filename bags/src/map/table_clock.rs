@@ -103,7 +103,11 @@ impl TableClock {
             }
             Values::Numbers(times) => times,
         };
-        let usual = if day_serial::are_days(times) { "d" } else { "s" };
+        let are_days = clock.unit.is_none() && column.unit.is_none() && day_serial::are_days(times);
+        let note = are_days.then(|| {
+            format!("column {name} is read in days: as seconds, its steps would be too small; give [clock] unit if it is something else")
+        });
+        let usual = if are_days { "d" } else { "s" };
         let unit = clock.unit.as_deref().or(column.unit.as_deref()).unwrap_or(usual);
         let unit = Unit::named(unit).filter(|unit| unit.dimension == Dimension::Time).ok_or_else(|| {
             let known = "s, ms, us, ns, min, h, d".to_string();
@@ -123,7 +127,7 @@ impl TableClock {
             let holds = nanoseconds.abs() < 9e18;
             holds.then(|| zero.checked_add(nanoseconds as i64)).flatten()
         };
-        Ok(TableClock { name, stamps: times.iter().map(stamp).collect(), dating, note: None })
+        Ok(TableClock { name, stamps: times.iter().map(stamp).collect(), dating, note })
     }
 
     /// The earliest and the latest stamp, ns; `None` without any.

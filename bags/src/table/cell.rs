@@ -125,6 +125,14 @@ impl Cells {
     }
 
     pub fn push(&mut self, cell: &str, decimal: char) {
+        // Nearly all cells are plain numbers.
+        if let (Known::Numbers(numbers), '.', None) = (&mut self.values, decimal, self.unit)
+            && let Some(number) = cell.parse().ok().filter(|number: &f64| !number.is_nan())
+        {
+            self.without_unit += 1;
+            numbers.push(number);
+            return;
+        }
         match &mut self.values {
             Known::Numbers(_) => {
                 let value = self.value(cell, decimal);

@@ -6,10 +6,36 @@ use super::split;
 use super::text_lines::Line;
 use super::time_text::TimeText;
 
+/// What a cell may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Missing,
+    Number,
+    Time,
+    Text,
+}
+
+impl Kind {
+    fn of(cell: &str) -> Kind {
+        match () {
+            () if ['.', ',']
+                .into_iter()
+                .any(|decimal| cell::read(cell, decimal).is_some_and(|(value, _)| !value.is_nan())) =>
+            {
+                Kind::Number
+            }
+            () if cell::is_missing(cell) => Kind::Missing,
+            () if TimeText::of(cell).is_some() => Kind::Time,
+            () => Kind::Text,
+        }
+    }
+}
+
 /// A line of the first ones.
 pub(super) struct HeadRow<'l> {
     pub text: &'l str,
     pub cells: Vec<String>,
+    pub kinds: Vec<Kind>,
     /// Cells that are not empty.
     pub filled: usize,
     /// Cells that are a number or a time.
@@ -33,6 +59,7 @@ impl<'l> HeadRow<'l> {
             text,
             filled: cells.iter().filter(|cell| !cell.is_empty()).count(),
             numbers: cells.iter().filter(|cell| is_number(cell)).count(),
+            kinds: cells.iter().map(|cell| Kind::of(cell)).collect(),
             with_unit: cells.iter().map(|cell| has_unit(cell)).collect(),
             is_comment,
             sampling: Sampling::of(text, delimiter, decimal),
@@ -50,6 +77,14 @@ impl<'l> HeadRow<'l> {
             && self.numbers > 0
             && 2 * known >= width
             && (!first_is_number || is_number(first) || cell::is_missing(first))
+    }
+
+    /// Whether at most half of its cells are of another kind than those of its column usually are. A date over numbers is that of the
+    /// recording, not one of them.
+    pub fn is_alike(&self, usual: &[Option<Kind>]) -> bool {
+        let known = || self.kinds.iter().zip(usual).filter(|(kind, _)| **kind != Kind::Missing);
+        let differs = known().filter(|(kind, usual)| usual.is_some_and(|usual| usual != **kind)).count();
+        2 * differs <= known().count()
     }
 
     /// Whether its numbers with units are headings of the plain numbers in the row below: `1 bar` over forces at this pressure.
@@ -75,6 +110,17 @@ fn has_unit(cell: &str) -> bool {
 /// Whether a cell is a number with any decimal sign, or a time.
 pub(super) fn is_number(cell: &str) -> bool {
     ['.', ','].into_iter().any(|decimal| cell::read(cell, decimal).is_some()) || TimeText::of(cell).is_some()
+}
+
+/// The kind that most cells of each column have, of lines of this width.
+pub(super) fn usual_kinds(rows: &[HeadRow], width: usize) -> Vec<Option<Kind>> {
+    let rows = || rows.iter().filter(|row| !row.is_comment && row.numbers > 0 && row.cells.len() == width);
+    let of_column = |column: usize| {
+        let count = |kind: Kind| rows().filter(|row| row.kinds.get(column) == Some(&kind)).count();
+        let known = rows().count() - count(Kind::Missing);
+        [Kind::Number, Kind::Time, Kind::Text].into_iter().find(|kind| known > 0 && 10 * count(*kind) >= 7 * known)
+    };
+    (0..width).map(of_column).collect()
 }
 
 /// The most frequent number of cells per line that has a number; the larger of two that are equally frequent.

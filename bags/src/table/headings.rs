@@ -2,6 +2,7 @@
 
 use super::layout::{Layout, unit_in};
 use super::{TableFormat, cell, heading};
+use crate::map::{Dimension, Unit};
 
 /// One column before its values are read.
 #[derive(Debug, PartialEq)]
@@ -41,6 +42,11 @@ impl Headings {
                 }
             } else if let Some(brackets) = heading::brackets(&name).filter(|_| unit.is_none()) {
                 headings.unknown(&name, brackets);
+            }
+            // Some loggers write the unit of the times alone.
+            let is_time = |found: &Unit| found.dimension == Dimension::Time && found.name.len() > 1;
+            if column == 0 && unit.is_none() {
+                unit = unit_in(&name).filter(is_time).map(|found| found.name.to_string());
             }
             headings.columns.push(ColumnHeading { name, unit, times: None });
         }
@@ -95,6 +101,8 @@ mod tests {
         let (found, notes) = columns(&["Time", "x", "p", "F"], &["Sec", "mm", "furlong", ""]);
         let wanted = [column("Time", "s", None), column("x", "mm", None), column("p", "", None), column("F", "", None)];
         assert_eq!((found.as_slice(), notes), (&wanted[..], 1));
+        let (found, _) = columns(&["ms", "Servo motor speed"], &[]);
+        assert_eq!((found[0].1.as_deref(), found[1].1.as_deref()), (Some("ms"), None));
         let (found, notes) = columns(&["t [ms]", "p [furlong]"], &[]);
         assert_eq!((found[0].1.as_deref(), found[1].1.as_deref(), notes), (Some("ms"), None, 1));
     }

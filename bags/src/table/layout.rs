@@ -1,6 +1,6 @@
 //! Finds where the numbers of a text table begin, and its headings and units before them.
 
-use super::head_rows::{HeadRow, is_number, usual_width};
+use super::head_rows::{HeadRow, is_number, usual_kinds, usual_width};
 use super::keyed_lines::{self, Channels};
 use super::sampling::Sampling;
 use super::split;
@@ -82,9 +82,10 @@ fn first_of_data(rows: &[HeadRow], width: usize) -> usize {
     let firsts = || usual.iter().filter(|row| !row.is_comment && row.cells.len() == width);
     let numbers = firsts().filter(|row| row.cells.first().is_some_and(|cell| is_number(cell))).count();
     let first_is_number = 2 * numbers >= firsts().count() && numbers > 0;
+    let kinds = usual_kinds(usual, width);
     let is_run = |from: usize, length: usize| {
         let rows = &rows[from..];
-        rows.iter().take(length).all(|row| row.is_data(width, first_is_number))
+        rows.iter().take(length).all(|row| row.is_data(width, first_is_number) && row.is_alike(&kinds))
     };
     let found = [FIRST_ROWS, 1].iter().find_map(|length| (0..rows.len()).find(|&from| is_run(from, *length)));
     match found {

@@ -47,11 +47,14 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFau
         Content { variables: mat4::parse(bytes, &mut table.notes, limits)?, ..Content::default() }
     };
     let Content { mut variables, texts, objects } = content;
+    let axes = axes(&variables);
+    let mut places = Vec::new();
     // Beside the numbers of a signal, each struct of an array has its type, its size and the like.
     if variables.iter().any(|variable| variable.values.len() > 1) {
         variables.retain(|variable| variable.values.len() > 1 || !variable.name.contains(")."));
     }
     for Variable { name, rows, values } in variables {
+        places.push((name.clone(), table.columns.len()));
         let (name, unit) = described(&name, &texts);
         let name = if name.is_empty() { format!("column_{}", table.columns.len() + 1) } else { name };
         let columns = values.len().checked_div(rows).unwrap_or(0);
@@ -66,6 +69,12 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFau
             let name = format!("{name}[{}]", index + 1);
             let unit = unit.clone();
             table.columns.push(Column { name, unit, values: Values::Numbers(column.to_vec()), times: None });
+        }
+    }
+    let place_of = |path: &String| places.iter().find(|(known, _)| known == path).map(|(_, place)| *place);
+    for (signal, times) in &axes {
+        if let (Some(signal), Some(times)) = (place_of(signal), place_of(times)) {
+            table.columns[signal].times = Some(times);
         }
     }
     if !objects.is_empty() {
@@ -83,6 +92,21 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFau
         return Err("it has no real numeric variable".into());
     }
     Ok(table)
+}
+
+/// Paths of the signals of dSPACE that have their own times, each with that of the times. `rec.Y(3).XIndex` is the number of its times
+/// among several `rec.X(2).Data`.
+fn axes(variables: &[Variable]) -> Vec<(String, String)> {
+    if !variables.iter().any(|variable| variable.name.ends_with(".X(2).Data")) {
+        return Vec::new();
+    }
+    let of = |variable: &Variable| {
+        let signal = variable.name.strip_suffix(".XIndex")?;
+        let (recording, _) = signal.rsplit_once(".Y")?;
+        let number = variable.values.first().filter(|number| number.fract() == 0.0)?;
+        Some((format!("{signal}.Data"), format!("{recording}.X({number}).Data")))
+    };
+    variables.iter().filter_map(of).collect()
 }
 
 /// The name and the unit that the fields beside the numbers of a signal give it.

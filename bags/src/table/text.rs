@@ -69,7 +69,7 @@ fn in_bytes<R: Read + Seek>(
     // Lines before the numbers may have other decimal signs.
     let decimal = format.decimal.unwrap_or_else(|| decimal_of(&head.lines[layout.data..], delimiter));
     let start = first_line.begin;
-    let first = FirstRows::of(&mut Rows::new(source, start, delimiter, limits.line)?)?;
+    let first = FirstRows::of(source, start, delimiter, limits)?;
     if first.count == 0 {
         return Err("the table has headings but no rows".into());
     }
@@ -84,21 +84,29 @@ fn in_bytes<R: Read + Seek>(
     Ok(table)
 }
 
-/// Number of all rows, and of cells in the longest of the first.
-#[derive(Default)]
+/// The number of cells in the longest of the first rows, and the largest possible number of all rows.
 struct FirstRows {
     count: usize,
     longest: usize,
 }
 
 impl FirstRows {
-    fn of(rows: &mut Rows) -> Result<FirstRows, TableFault> {
-        let mut first = FirstRows::default();
-        while let Some(row) = rows.next()? {
-            if first.count < ROWS_LOOKED_AT {
-                first.longest = first.longest.max(row.len());
-            }
+    fn of<R: Read + Seek>(
+        source: &mut R,
+        start: u64,
+        delimiter: u8,
+        limits: &ReadLimits,
+    ) -> Result<FirstRows, TableFault> {
+        let mut first = FirstRows { count: 0, longest: 0 };
+        let mut rows = Rows::new(source, start, delimiter, limits.line)?;
+        for _ in 0..ROWS_LOOKED_AT {
+            let Some(row) = rows.next()? else { break };
+            first.longest = first.longest.max(row.len());
             first.count += 1;
+        }
+        drop(rows);
+        if first.count == ROWS_LOOKED_AT {
+            first.count = first.count.max(text_lines::count(source, start)?);
         }
         Ok(first)
     }

@@ -89,6 +89,20 @@ fn with_whole_cells(lines: Vec<Line>) -> Vec<Line> {
     whole
 }
 
+/// Number of lines from byte `start` on.
+pub(super) fn count<R: Read + Seek>(source: &mut R, start: u64) -> Result<usize> {
+    source.seek(SeekFrom::Start(start))?;
+    let mut buffer = [0; 1 << 14];
+    let mut lines = 1;
+    loop {
+        let read = source.read(&mut buffer)?;
+        if read == 0 {
+            return Ok(lines);
+        }
+        lines += buffer[..read].iter().filter(|byte| **byte == b'\n').count();
+    }
+}
+
 /// The next line with its line end, at most `most` bytes.
 fn line(reader: &mut impl BufRead, most: u64) -> Result<Option<Vec<u8>>> {
     let mut line = Vec::new();

@@ -120,6 +120,7 @@ fn what_is_missing_is_told_in_one_line() {
         (error("t,x\n0,1\n", &format!("[clock]\ntopic = \"/a\"\n{signals}")), "is taken from a topic"),
         (error("t,x\n0,1\n", &format!("[clock]\nrate = 5.0\nstart = \"today\"\n{signals}")), "start = \"today\""),
         (error("t,x\nnan,1\n", signals), "the clock (column t) has no time; times are numbers"),
+        (error("Time,x\n20.11.2023,1\n20.11.2023,2\n", signals), "all 2 rows have the same; times are numbers"),
         (error("Time,x\n10h00,1\n10h01,2\n", signals), "the first is \"10h00\"; times are numbers"),
     ] {
         assert!(found.contains(part), "\"{part}\" is missing in: {found}");
@@ -316,6 +317,29 @@ fn structs_of_signals_are_columns_with_their_names_and_units() {
         column("Pressure A", "bar", &[4.0, 5.0, 6.0]),
     ];
     assert_eq!(columns(&Table::from_mat(&file).unwrap()), expected);
+}
+
+#[test]
+fn signals_of_several_rates_have_their_own_times() {
+    let numbers = |values: &[f64]| array("", 6, [values.len() as i32, 1], &[doubles(values)]);
+    let slow: Vec<f64> = (0..20).map(f64::from).collect();
+    let fast: Vec<f64> = (0..39).map(|i| 0.5 * f64::from(i)).collect();
+    let tenfold = |times: &[f64]| times.iter().map(|time| 10.0 * time).collect::<Vec<f64>>();
+    let x = [numbers(&slow), numbers(&fast)];
+    let y = [numbers(&tenfold(&slow)), numbers(&[1.0]), numbers(&tenfold(&fast)), numbers(&[2.0])];
+    let file = mat5(&[structs(
+        "rec",
+        1,
+        &["X", "Y"],
+        &[structs("", 2, &["Data"], &x), structs("", 2, &["Data", "XIndex"], &y)],
+    )]);
+    let folder = File::new();
+    let path = folder.write("rates.mat", &file);
+    let map = "[clock]\ncolumn = \"rec.X(1).Data\"\n[[signals]]\nsignal = \"load.displacement\"\ncolumn = \"rec.Y(1).Data\"\n\
+               [[signals]]\nsignal = \"load.cap_pressure\"\ncolumn = \"rec.Y(2).Data\"\n";
+    let (recording, _) = read_mapped(&path, &map.parse().unwrap()).unwrap();
+    assert_eq!((recording.len(), recording.cylinders[0].displacement[7]), (20, 70.0));
+    assert_eq!(recording.cylinders[0].displacement, recording.cylinders[0].cap_pressure);
 }
 
 #[test]

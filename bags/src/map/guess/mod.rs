@@ -19,6 +19,7 @@ use self::candidate::Found;
 pub use self::sheet_column::{SheetColumn, ZeroAt};
 use super::clock_source::ClockSource;
 use super::document::TopicMap;
+use super::fault_code;
 use super::signal_source::SignalSource;
 use super::unit::{Dimension, Unit};
 use crate::BagError;
@@ -226,11 +227,15 @@ impl GuessedSignal {
 /// # Errors
 /// If the data cannot be read: the errors of [`RawMessages::open`](rosbag2::RawMessages::open), [`BagError::BadTable`].
 pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagError> {
-    let Found { candidates, clock, unreadable } = if Table::is_table(path) {
+    let Found { mut candidates, clock, unreadable } = if Table::is_table(path) {
         from_table::candidates(&Table::read(path, &TableFormat::default())?)
     } else {
         from_bag::candidates(path)?
     };
+    for candidate in &mut candidates {
+        // A code of -999 is no extreme of a position.
+        fault_code::remove_from(&mut candidate.values);
+    }
     let (signals, mut left) = choose::choose(candidates, hints.into());
     left.extend(unreadable);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
