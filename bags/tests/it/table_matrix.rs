@@ -45,7 +45,7 @@ enum Time {
     American,
     Month,
     TwoColumns,
-    DayAndTime,
+    DayBeside,
     Spreadsheet,
     Matlab,
     Epoch,
@@ -81,7 +81,7 @@ const TIMES: [Time; 13] = [
     Time::American,
     Time::Month,
     Time::TwoColumns,
-    Time::DayAndTime,
+    Time::DayBeside,
     Time::Spreadsheet,
     Time::Matlab,
     Time::Epoch,
@@ -93,7 +93,7 @@ const SIGNS: [(char, char); 6] = [(',', '.'), (';', '.'), (';', ','), ('\t', '.'
 const UNITS: [[(&str, f64); 3]; 3] = [
     [("mm", 1e-3), ("bar", 1e5), ("°C", 1.0)],
     [("m", 1.0), ("Pa", 1.0), ("Celsius", 1.0)],
-    [("in", 0.0254), ("psig", 6894.757_293), ("deg C", 1.0)],
+    [("in", 0.0254), ("psig", 6_894.757_293), ("deg C", 1.0)],
 ];
 
 /// One way to write the recording.
@@ -162,7 +162,7 @@ impl Way {
                 let whole = DATE * 86_400 + milliseconds / 1000;
                 vec![whole.to_string(), (milliseconds % 1000 * 1_000_000).to_string()]
             }
-            Time::DayAndTime => vec![format!("{date}.11.2023"), clock],
+            Time::DayBeside => vec![format!("{date}.11.2023"), clock],
             Time::Spreadsheet => vec![plain((DATE + 25_569) as f64 + seconds / 86_400.0, 10)],
             Time::Matlab => vec![plain((DATE + 719_529) as f64 + seconds / 86_400.0, 10)],
             Time::Epoch => vec![plain((DATE * 86_400) as f64 + seconds, 3)],
@@ -174,7 +174,7 @@ impl Way {
             Time::Seconds => vec![("Time", "s")],
             Time::Milliseconds => vec![("Time", "msec")],
             Time::TwoColumns => vec![("stamp.secs", ""), ("stamp.nsecs", "")],
-            Time::DayAndTime => vec![("Date", ""), ("Time", "")],
+            Time::DayBeside => vec![("Date", ""), ("Time", "")],
             _ => vec![("Time", "")],
         }
     }
@@ -321,7 +321,7 @@ impl Way {
                     true => value.is_nan(),
                     false => (value - wanted).abs() <= tolerance.max(6e-6 * self.units[column].1),
                 };
-                if !is_right && !(is_end && value.is_nan()) {
+                if !(is_right || is_end && value.is_nan()) {
                     return Some(format!("column {column} row {row} is {value} instead of {wanted}: {}", told()));
                 }
             }
