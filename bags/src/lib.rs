@@ -33,7 +33,7 @@ mod write_recording;
 pub use error::BagError;
 pub use info::{ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, SignalsTally, TableInfo};
 pub use own_messages::{own_definitions, topic_to_write, write_message};
-pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
+pub use reading::{Gap, MappedUnit, ReadReport, StateTable, read_recording, read_recording_in_blocks};
 pub use topics::Topics;
 pub use write_recording::write_recording;
 

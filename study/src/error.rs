@@ -16,6 +16,8 @@ use excavator_model::formula::FormulaError;
 use excavator_model::simulation::{ProfileError, RunError};
 use excavator_model::{ModelError, SignalError};
 
+use crate::mapped_units::MappedUnitError;
+
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
@@ -30,6 +32,8 @@ pub enum WorkError {
     Part { path: PathBuf, reason: String },
     #[error("\"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },
+    #[error(transparent)]
+    MappedUnit(#[from] MappedUnitError),
     #[error(transparent)]
     Check(#[from] CheckError),
     #[error(transparent)]

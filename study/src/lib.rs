@@ -42,6 +42,7 @@ pub mod diagnosis_file;
 mod error;
 mod json_text;
 mod long_recording;
+pub mod mapped_units;
 mod model_files;
 pub mod numbers;
 pub mod position_test;

@@ -11,8 +11,8 @@ use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::input_holes;
 
-use crate::WorkError;
 use crate::spikes::leave_out_spikes;
+use crate::{WorkError, mapped_units};
 
 /// A recording longer than this is long, s of time on a machine of the reference size. A fit of three minutes takes a
 /// minute.
@@ -124,7 +124,8 @@ pub fn choice(used: &Recording, chosen: &Chosen) -> String {
 /// what the map of the recording leaves out.
 ///
 /// # Errors
-/// [`WorkError::Check`] if a check refuses the recording, [`WorkError::Condition`] if a condition cannot be parsed.
+/// [`WorkError::MappedUnit`] if a signal is mapped in another dimension than the machine has it in, [`WorkError::Check`] if a check
+/// refuses the recording, [`WorkError::Condition`] if a condition cannot be parsed.
 pub fn checked(
     name: &str,
     recording: Recording,
@@ -133,11 +134,13 @@ pub fn checked(
     model: &Model,
     remarks: &mut Vec<String>,
 ) -> Result<Recording, WorkError> {
+    mapped_units::check(name, &model.machine, &report.mapped)?;
     let mut recording = recording;
     remarks.extend(leave_out_spikes(&mut recording).iter().map(|line| format!("{name}: {line}")));
     let (mut recording, reduced) = at_useful_rate(recording);
     remarks.extend(reduced.map(|line| format!("{name}: {line}")));
     leave_pump_pressure_out(model, &mut recording, &report.left_out);
+    remarks.extend(checks::remove_impossible(model, &mut recording).iter().map(|found| format!("{name}: {found}")));
     for overruled in checks::check(model, &recording, usage.accept)? {
         remarks.push(format!("accepted: {overruled}"));
     }

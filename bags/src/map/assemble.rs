@@ -4,21 +4,23 @@ use std::path::Path;
 
 use excavator_model::recording::Recording;
 
+use super::conversion::Conversion;
 use super::document::TopicMap;
 use super::error::MapError;
+use super::fault_code;
 use super::one_clock::stretch_text;
 use super::resample::{Policy, resample};
 use super::signal_source::SignalSource;
 use super::track::Track;
 use super::wanted::{Computed, Wanted};
-use crate::reading::{ReadReport, count_late, gaps, steps_back};
+use crate::reading::{MappedUnit, ReadReport, count_late, gaps, steps_back};
 
 /// A sensor may end this long before the clock begins, ns; more is another clock.
 const ENDS_EARLY: i64 = 1_000_000_000;
 
-/// The samples read for one signal or name.
-pub(super) enum Samples {
-    /// Values with their stamps, ns.
+/// The numbers of one signal or name.
+enum Samples {
+    /// Before their conversion, with their stamps, ns.
     Timed(Vec<(i64, f64)>),
     /// A constant, for the whole recording.
     Constant(f64),
@@ -29,14 +31,21 @@ pub(super) struct Input<'m> {
     label: String,
     signal: Option<&'m SignalSource>,
     /// How it is resampled to the clock; `None` for a constant.
-    wanted: Option<Wanted<'m>>,
+    wanted: Option<(Wanted<'m>, Conversion)>,
     samples: Samples,
 }
 
 impl<'m> Input<'m> {
-    /// The samples of an entry of the map.
-    pub fn read(wanted: Wanted<'m>, samples: Samples) -> Input<'m> {
-        Input { label: wanted.label.clone(), signal: wanted.signal, wanted: Some(wanted), samples }
+    /// The numbers of an entry of the map with their stamps, ns, before their conversion.
+    pub fn read(wanted: Wanted<'m>, conversion: Conversion, samples: Vec<(i64, f64)>) -> Input<'m> {
+        let (label, signal) = (wanted.label.clone(), wanted.signal);
+        Input { label, signal, wanted: Some((wanted, conversion)), samples: Samples::Timed(samples) }
+    }
+
+    /// The signal and what its values measure, if the map or the data say so.
+    fn mapped(&self) -> Option<MappedUnit> {
+        let (_, conversion) = self.wanted.as_ref()?;
+        mapped_unit(self.signal?, conversion)
     }
 
     /// Its values at the clock times (ns, ascending).
@@ -44,12 +53,15 @@ impl<'m> Input<'m> {
     /// # Errors
     /// [`MapError::NoCommonTime`].
     fn on(self, clock: &[i64], clock_name: &str, report: &mut ReadReport) -> Result<Vec<f64>, MapError> {
-        let (samples, wanted) = match (self.samples, self.wanted) {
+        let (mut samples, (wanted, conversion)) = match (self.samples, self.wanted) {
             (Samples::Constant(value), _) => return Ok(vec![value; clock.len()]),
             (Samples::Timed(_), None) => return Ok(vec![f64::NAN; clock.len()]),
             (Samples::Timed(samples), Some(wanted)) => (samples, wanted),
         };
+        let codes = fault_code::remove(&mut samples);
+        samples.iter_mut().for_each(|(_, number)| *number = conversion.apply(*number));
         let mut track = Track::new(samples);
+        report.notes.extend(fault_code::note(&self.label, &codes, &track));
         if wanted.from.topic.is_some() {
             check_common_time(&self.label, &track, clock, clock_name)?;
         }
@@ -114,6 +126,7 @@ pub(super) fn assemble(
     for input in inputs {
         let (label, signal) = (input.label.clone(), input.signal);
         let is_used = is_used(&label);
+        report.mapped.extend(input.mapped());
         if signal.is_none() && !is_used {
             continue;
         }
@@ -129,6 +142,7 @@ pub(super) fn assemble(
         // Names of the map are added after signals, and take precedence over signals of the same name.
         let column =
             |label: &String| used.iter().rfind(|(known, _)| known == label).map_or(&[][..], |(_, values)| values);
+        report.mapped.extend(mapped_unit(source, conversion));
         let columns: Vec<&[f64]> = inputs.iter().map(column).collect();
         let values = formula.evaluate(&recording.time, &columns);
         let values: Vec<f64> = values.into_iter().map(|value| conversion.apply(value)).collect();
@@ -183,6 +197,11 @@ fn leave_out_spikes(source: &SignalSource, track: &mut Track, clock: &[i64], rep
         first.saturating_sub(start) as f64 / 1e9,
         source.signal.kind.dimension().si_unit()
     ));
+}
+
+fn mapped_unit(source: &SignalSource, conversion: &Conversion) -> Option<MappedUnit> {
+    let (dimension, unit) = conversion.measures()?;
+    Some(MappedUnit { signal: source.signal.clone(), unit, dimension })
 }
 
 fn note_missing(signal: &str, track: &Track, values: &[f64], policy: Policy, report: &mut ReadReport) {

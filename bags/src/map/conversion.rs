@@ -10,6 +10,8 @@ pub struct Conversion {
     unit: Unit,
     factor: f64,
     offset: f64,
+    /// What the values measure; `None` if neither map nor data say so.
+    dimension: Option<Dimension>,
 }
 
 impl Conversion {
@@ -24,9 +26,14 @@ impl Conversion {
             None => Unit::si(dimension),
             Some(name) => unit_named(&signal, name)?,
         };
-        let scale = match &source.scale {
-            Some(scale) => scale.ratio_to_si(&signal, unit.dimension, |found| source.signal.kind.takes(found))?,
-            None if source.signal.kind.takes(unit.dimension) => 1.0,
+        let is_given = source.unit.is_some() || heading.is_some();
+        let own = Some(unit.dimension).filter(|own| is_given && source.signal.kind.takes(*own));
+        let (scale, measured) = match &source.scale {
+            Some(scale) => {
+                let ratio = scale.ratio_to_si(&signal, unit.dimension, |found| source.signal.kind.takes(found))?;
+                (ratio.factor, ratio.over.or(own))
+            }
+            None if source.signal.kind.takes(unit.dimension) => (1.0, own),
             None => {
                 return Err(MapError::WrongDimension {
                     signal,
@@ -51,7 +58,7 @@ impl Conversion {
             }
             None => 0.0,
         };
-        Ok(Conversion { unit, factor: sign * scale, offset })
+        Ok(Conversion { unit, factor: sign * scale, offset, dimension: measured })
     }
 
     /// The conversion of a name in formulas: to SI if it has a unit, otherwise none. `place` is for error messages.
@@ -63,7 +70,12 @@ impl Conversion {
             None => Unit::si(Dimension::Number),
             Some(name) => unit_named(place, name)?,
         };
-        Ok(Conversion { unit, factor: 1.0, offset: 0.0 })
+        Ok(Conversion { unit, factor: 1.0, offset: 0.0, dimension: None })
+    }
+
+    /// What the values measure, and the unit of the numbers; `None` if neither map nor data say so.
+    pub(super) fn measures(&self) -> Option<(Dimension, &'static str)> {
+        self.dimension.map(|dimension| (dimension, self.unit.name))
     }
 
     /// The value of the signal; a value that is not finite counts as not measured.

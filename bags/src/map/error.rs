@@ -319,6 +319,16 @@ pub enum MapError {
         /// Length of the clock, s.
         duration: f64,
     },
+    /// A column of times without a time.
+    #[error("{}: the clock (column {column}) has no time{}; times are {}", path.display(), because(example), crate::table::TIME_FORMS)]
+    NoTimes {
+        /// The data.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// What was found in it, if anything.
+        example: Option<String>,
+    },
     /// A clock without samples.
     #[error("{}: the clock ({clock}) has no sample", path.display())]
     EmptyClock {
@@ -327,6 +337,10 @@ pub enum MapError {
         /// Topic or column.
         clock: String,
     },
+}
+
+fn because(found: &Option<String>) -> String {
+    found.as_ref().map_or(String::new(), |found| format!(": {found}"))
 }
 
 fn listed(files: &[PathBuf]) -> String {

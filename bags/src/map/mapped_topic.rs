@@ -7,7 +7,7 @@ use rosbag2::cdr::CdrError;
 use rosbag2::dynamic::{Definitions, FieldPath, Layout, Selector};
 use rosbag2::{RawMessage, RawMessages, Topic};
 
-use super::assemble::{Input, Samples};
+use super::assemble::Input;
 use super::channels::{Beside, Channels};
 use super::clock_source::Stamp;
 use super::conversion::Conversion;
@@ -154,7 +154,7 @@ impl<'m> MappedTopic<'m> {
 
     /// The samples read.
     pub fn into_inputs(self) -> impl Iterator<Item = Input<'m>> {
-        self.fields.into_iter().map(|field| Input::read(field.wanted, Samples::Timed(field.samples)))
+        self.fields.into_iter().map(|field| Input::read(field.wanted, field.conversion, field.samples))
     }
 
     /// Reads the numbers of one message. Returns the bytes of memory that they take.
@@ -261,7 +261,7 @@ impl<'m> MappedTopic<'m> {
                 }
                 mapped.channels.note(self.channel, times.log);
                 let stamp = mapped.stamp.read(times, layout, message)?.saturating_add(mapped.wanted.shift());
-                mapped.samples.push((stamp, mapped.conversion.apply(number)));
+                mapped.samples.push((stamp, number));
                 taken += 1;
             }
         }

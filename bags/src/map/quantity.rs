@@ -15,6 +15,15 @@ pub enum Quantity {
     Text(String),
 }
 
+/// A ratio of two units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ratio {
+    /// In SI units.
+    pub factor: f64,
+    /// Dimension of the unit above the slash; `None` for a plain number.
+    pub over: Option<Dimension>,
+}
+
 impl Quantity {
     /// The SI value of a quantity with this dimension. Treated as a difference, so that `"10 K"` is 10 K.
     pub(super) fn to_si(&self, signal: &str, key: &'static str, dimension: Dimension) -> Result<f64, MapError> {
@@ -35,10 +44,10 @@ impl Quantity {
         signal: &str,
         from: Dimension,
         takes: impl Fn(Dimension) -> bool,
-    ) -> Result<f64, MapError> {
+    ) -> Result<Ratio, MapError> {
         let bad = || self.bad(signal, "scale", "25 bar/V");
         match self {
-            Quantity::Number(number) => finite(*number, signal, "scale"),
+            Quantity::Number(number) => Ok(Ratio { factor: finite(*number, signal, "scale")?, over: None }),
             Quantity::Text(text) => {
                 let (number, units) = split(text).ok_or_else(bad)?;
                 // Units can contain slashes: l/min per rpm, mm/s per V, l/min per rad/s.
@@ -48,12 +57,13 @@ impl Quantity {
                         && under.dimension == Dimension::Angle
                         && takes(Dimension::Flow)
                     {
-                        return Some(volume(over)? / under.factor());
+                        return Some((volume(over)? / under.factor(), Dimension::Flow));
                     }
                     let over = Unit::named(over).filter(|unit| takes(unit.dimension))?;
-                    (under.dimension == from).then(|| over.factor() / under.factor())
+                    (under.dimension == from).then(|| (over.factor() / under.factor(), over.dimension))
                 });
-                Ok(number * ratio.ok_or_else(bad)?)
+                let (ratio, over) = ratio.ok_or_else(bad)?;
+                Ok(Ratio { factor: number * ratio, over: Some(over) })
             }
         }
     }

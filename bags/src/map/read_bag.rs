@@ -6,7 +6,7 @@ use excavator_model::recording::Recording;
 use rosbag2::RawMessages;
 use rosbag2::dynamic::Definitions;
 
-use super::assemble::{Input, Samples, assemble, constants};
+use super::assemble::{Input, assemble, constants};
 use super::channels::Beside;
 use super::document::TopicMap;
 use super::error::MapError;
@@ -45,8 +45,8 @@ pub(super) fn read_bag(path: &Path, map: &TopicMap) -> Result<(Recording, ReadRe
     inputs.extend(topics.into_iter().flat_map(MappedTopic::into_inputs));
     for wanted in columns {
         let Some(name) = wanted.from.column.clone() else { continue };
-        let samples = Samples::Timed(joined::samples(&tables, &wanted, &name)?);
-        inputs.push(Input::read(wanted, samples));
+        let (conversion, samples) = joined::samples(&tables, &wanted, &name)?;
+        inputs.push(Input::read(wanted, conversion, samples));
     }
     let recording = assemble(path, &clock_name, stamps, map, inputs, &computed, &mut report)?;
     Ok((recording, report, dating))

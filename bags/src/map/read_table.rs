@@ -4,7 +4,7 @@ use std::path::Path;
 
 use excavator_model::recording::Recording;
 
-use super::assemble::{Input, Samples, assemble, constants};
+use super::assemble::{Input, assemble, constants};
 use super::clock_source::ColumnName;
 use super::document::TopicMap;
 use super::error::MapError;
@@ -35,26 +35,42 @@ pub(super) fn read_table(
     let clock = TableClock::of(&table, &map.clock, rows(&table, &wanted))?;
     report.notes.extend(clock.note.iter().cloned());
     let Some((first, last)) = clock.range() else {
-        return Err(MapError::EmptyClock { path: path.to_path_buf(), clock: clock.name }.into());
+        let own = format!("column {}: ", clock.name);
+        let example = report.notes.iter().find_map(|note| note.strip_prefix(&own)).map(str::to_string);
+        return Err(MapError::NoTimes { path: path.to_path_buf(), column: clock.name, example }.into());
     };
+    let rows = clock.stamps.iter().flatten().count();
+    if first == last && rows > 1 {
+        // A date alone, or a time to the minute.
+        let example = Some(format!("all {rows} rows have the same"));
+        return Err(MapError::NoTimes { path: path.to_path_buf(), column: clock.name, example }.into());
+    }
     let joined = joined::timed(joined, map, Span { first, last, dating: clock.dating }, &mut report)?;
-    let mut tables = vec![TimedTable { file: None, table, stamps: clock.stamps }];
+    let (clock_name, dating) = (clock.name.clone(), clock.dating);
+    let mut tables = vec![TimedTable::of(None, table, clock, &map.clock, 0)];
     tables.extend(joined);
     let mut inputs: Vec<Input> = constants(map)?;
+    let of_data = wanted.iter().filter(|wanted| wanted.file().is_none() && wanted.signal.is_some());
+    let of_data: Vec<&ColumnName> = of_data.filter_map(|wanted| wanted.from.column.as_ref()).collect();
+    let stamps = tables[0].clock_of(&of_data);
     for wanted in wanted {
         let Some(name) = wanted.from.column.clone() else { continue };
-        let samples = Samples::Timed(joined::samples(&tables, &wanted, &name)?);
-        inputs.push(Input::read(wanted, samples));
+        let (conversion, samples) = joined::samples(&tables, &wanted, &name)?;
+        inputs.push(Input::read(wanted, conversion, samples));
     }
-    let own = tables.swap_remove(0).stamps;
-    let without_time = own.iter().filter(|stamp| stamp.is_none()).count();
+    let without_time = tables[0].stamps.iter().filter(|stamp| stamp.is_none()).count();
     if without_time > 0 {
         report.notes.push(format!("{without_time} rows without time were left out"));
     }
-    let stamps: Vec<i64> = own.into_iter().flatten().collect();
-    report.messages.insert("rows".to_string(), stamps.len() as u64);
-    let recording = assemble(path, &clock.name, stamps, map, inputs, &computed, &mut report)?;
-    Ok((recording, report, clock.dating))
+    report.messages.insert("rows".to_string(), rows as u64);
+    if stamps.len() < rows {
+        report.notes.push(format!(
+            "the table has several topics: its {rows} rows make {} samples, as many as the column with most has values",
+            stamps.len()
+        ));
+    }
+    let recording = assemble(path, &clock_name, stamps, map, inputs, &computed, &mut report)?;
+    Ok((recording, report, dating))
 }
 
 /// Rows of the first column that the map refers to; columns of a MATLAB file can have different lengths.

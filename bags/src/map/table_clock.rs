@@ -1,14 +1,32 @@
 //! Determines when the rows of a table were recorded.
 
 use super::clock_source::ClockSource;
+use super::day_serial;
 use super::error::MapError;
 use super::unit::{Dimension, Unit};
 use crate::table::{Column, Table, Values};
 
 /// Headings recognised as time if the map names no column.
-const TIME_NAMES: [&str; 6] = ["time", "t", "timestamp", "stamp", "zeit", "time_s"];
+const TIME_NAMES: [&str; 14] = [
+    "time",
+    "t",
+    "timestamp",
+    "stamp",
+    "zeit",
+    "time_s",
+    "__time",
+    "x_value",
+    "time stamp",
+    "elapsed time",
+    "zeitstempel",
+    "uhrzeit",
+    "datetime",
+    "date/time",
+];
 /// Time 0 of a table without a date: 1 January 2000. Not the epoch, since a stamp of zero means "not set".
 const DEFAULT_START: i64 = 946_684_800_000_000_000;
+/// ns of a day.
+const DAY: i64 = 86_400_000_000_000;
 /// Larger numbers are seconds since the epoch (1973 and later), smaller ones are seconds since the start of the
 /// recording.
 pub(super) const EPOCH_SECONDS: f64 = 1e8;
@@ -61,6 +79,15 @@ impl TableClock {
         }
     }
 
+    /// The times of columns that have their own.
+    ///
+    /// # Errors
+    /// [`MapError::UnknownUnit`], [`MapError::BadStart`].
+    pub fn own(times: &Column, clock: &ClockSource) -> Result<TableClock, MapError> {
+        let start = clock.start.as_deref().map(parse_start).transpose()?;
+        TableClock::of_column(times, clock, start)
+    }
+
     fn even(rate: f64, rows: usize, start: Option<i64>, note: Option<String>) -> TableClock {
         let zero = start.unwrap_or(DEFAULT_START);
         let stamp = |row: usize| zero.checked_add((row as f64 / rate * 1e9).round() as i64);
@@ -76,24 +103,31 @@ impl TableClock {
             }
             Values::Numbers(times) => times,
         };
-        let unit = clock.unit.as_deref().or(column.unit.as_deref()).unwrap_or("s");
+        let are_days = clock.unit.is_none() && column.unit.is_none() && day_serial::are_days(times);
+        let note = are_days.then(|| {
+            format!("column {name} is read in days: as seconds, its steps would be too small; give [clock] unit if it is something else")
+        });
+        let usual = if are_days { "d" } else { "s" };
+        let unit = clock.unit.as_deref().or(column.unit.as_deref()).unwrap_or(usual);
         let unit = Unit::named(unit).filter(|unit| unit.dimension == Dimension::Time).ok_or_else(|| {
-            let known = "s, ms, us, ns, min, h".to_string();
+            let known = "s, ms, us, ns, min, h, d".to_string();
             MapError::UnknownUnit { signal: "[clock]".to_string(), unit: unit.to_string(), known }
         })?;
         let first = times.iter().copied().find(|time| time.is_finite()).map_or(0.0, |time| unit.to_si(time));
-        let (zero, dating) = match start {
-            Some(start) => (start, Dating::Dated),
-            None if first > EPOCH_SECONDS => (0, Dating::Dated),
-            None => (DEFAULT_START, Dating::Undated(DEFAULT_START)),
+        let days = if unit.name == "d" { day_serial::epoch(first / unit.factor()) } else { None };
+        let (zero, dating) = match (start, days) {
+            (_, Some(_)) => (0, Dating::Dated),
+            (Some(start), _) => (start, Dating::Dated),
+            (None, None) if first > EPOCH_SECONDS => (0, Dating::Dated),
+            (None, None) => (DEFAULT_START, Dating::Undated(DEFAULT_START)),
         };
         let stamp = |&time: &f64| {
-            let nanoseconds = (unit.to_si(time) * 1e9).round();
+            let nanoseconds = (unit.to_si(time - days.unwrap_or(0.0)) * 1e9).round();
             // A time that does not fit in a stamp is treated as missing.
             let holds = nanoseconds.abs() < 9e18;
             holds.then(|| zero.checked_add(nanoseconds as i64)).flatten()
         };
-        Ok(TableClock { name, stamps: times.iter().map(stamp).collect(), dating, note: None })
+        Ok(TableClock { name, stamps: times.iter().map(stamp).collect(), dating, note })
     }
 
     /// The earliest and the latest stamp, ns; `None` without any.
@@ -105,8 +139,18 @@ impl TableClock {
 
 /// The column that is most likely the time: one of dates, otherwise one with a common heading.
 pub(super) fn time_column(table: &Table) -> Option<&Column> {
-    let by_name = |column: &&Column| TIME_NAMES.contains(&column.name.to_lowercase().as_str());
-    let dates = table.columns.iter().find(|column| matches!(column.values, Values::Stamps(_)));
+    let has_times = |column: &&Column| match &column.values {
+        Values::Numbers(numbers) => numbers.iter().any(|number| number.is_finite()),
+        Values::Stamps(_) => true,
+    };
+    let by_name = |column: &&Column| {
+        TIME_NAMES.contains(&column.name.to_lowercase().as_str()) && (has_times(column) || table.sampling.is_none())
+    };
+    let dates = table.columns.iter().find(|column| match &column.values {
+        // A column of days says nothing of the time between rows.
+        Values::Stamps(stamps) => stamps.iter().flatten().any(|stamp| stamp % DAY != 0),
+        Values::Numbers(_) => false,
+    });
     dates.or_else(|| table.columns.iter().find(by_name))
 }
 

@@ -75,6 +75,11 @@ impl Track {
         self.stamps.first().copied().zip(self.stamps.last().copied())
     }
 
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        self.stamps.len()
+    }
+
     /// Whether there is no value.
     pub fn is_empty(&self) -> bool {
         self.stamps.is_empty()

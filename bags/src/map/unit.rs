@@ -4,6 +4,8 @@ use std::fmt;
 
 use excavator_model::machine::CommandUnit;
 
+use super::unit_words;
+
 /// The dimension of a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
@@ -12,12 +14,17 @@ pub enum Dimension {
     Angle,
     Velocity,
     RotationalSpeed,
+    Acceleration,
     Pressure,
     Force,
+    Torque,
     Flow,
     Area,
     Temperature,
     Time,
+    Frequency,
+    Power,
+    Mass,
     Voltage,
     Current,
     Number,
@@ -42,12 +49,17 @@ impl Dimension {
             Dimension::Angle => "rad",
             Dimension::Velocity => "m/s",
             Dimension::RotationalSpeed => "rad/s",
+            Dimension::Acceleration => "m/s2",
             Dimension::Pressure => "Pa",
             Dimension::Force => "N",
+            Dimension::Torque => "Nm",
             Dimension::Flow => "m3/s",
             Dimension::Area => "m2",
             Dimension::Temperature => "degC",
             Dimension::Time => "s",
+            Dimension::Frequency => "Hz",
+            Dimension::Power => "W",
+            Dimension::Mass => "kg",
             Dimension::Voltage => "V",
             Dimension::Current => "A",
             Dimension::Number => "1",
@@ -62,12 +74,17 @@ impl fmt::Display for Dimension {
             Dimension::Angle => "angle",
             Dimension::Velocity => "velocity",
             Dimension::RotationalSpeed => "rotational speed",
+            Dimension::Acceleration => "acceleration",
             Dimension::Pressure => "pressure",
             Dimension::Force => "force",
+            Dimension::Torque => "torque",
             Dimension::Flow => "volume flow",
             Dimension::Area => "area",
             Dimension::Temperature => "temperature",
             Dimension::Time => "time",
+            Dimension::Frequency => "frequency",
+            Dimension::Power => "power",
+            Dimension::Mass => "mass",
             Dimension::Voltage => "voltage",
             Dimension::Current => "current",
             Dimension::Number => "plain number",
@@ -96,35 +113,11 @@ const INCH: f64 = 0.0254;
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const GALLON: f64 = 3.785_411_784e-3;
 
-/// Other spellings of units, in lower case.
-const SPELLINGS: [(&str, &str); 20] = [
-    ("volt", "V"),
-    ("volts", "V"),
-    ("amps", "A"),
-    ("ampere", "A"),
-    ("milliamps", "mA"),
-    ("gal/min", "gpm"),
-    ("usgpm", "gpm"),
-    ("litre/min", "l/min"),
-    ("liter/min", "l/min"),
-    ("rev/min", "rpm"),
-    ("r/min", "rpm"),
-    ("u/min", "rpm"),
-    ("psig", "psi"),
-    ("sec", "s"),
-    ("secs", "s"),
-    ("seconds", "s"),
-    ("msec", "ms"),
-    ("inch", "in"),
-    ("degree", "deg"),
-    ("degrees", "deg"),
-];
-
 /// All units; the SI unit is the first of its dimension.
-const UNITS: [Unit; 64] = {
+const UNITS: [Unit; 82] = {
     use Dimension::{
-        Angle, Area, Current, Flow, Force, Length, Number, Pressure, RotationalSpeed, Temperature, Time, Velocity,
-        Voltage,
+        Acceleration, Angle, Area, Current, Flow, Force, Frequency, Length, Mass, Number, Power, Pressure,
+        RotationalSpeed, Temperature, Time, Torque, Velocity, Voltage,
     };
     use std::f64::consts::PI;
     [
@@ -133,6 +126,7 @@ const UNITS: [Unit; 64] = {
         unit("mm", Length, 1.0, 1e3),
         unit("um", Length, 1.0, 1e6),
         unit("in", Length, INCH, 1.0),
+        unit("ft", Length, 12.0 * INCH, 1.0),
         unit("rad", Angle, 1.0, 1.0),
         unit("mrad", Angle, 1.0, 1e3),
         unit("deg", Angle, PI, 180.0),
@@ -141,23 +135,31 @@ const UNITS: [Unit; 64] = {
         unit("cm/s", Velocity, 1.0, 100.0),
         unit("mm/s", Velocity, 1.0, 1e3),
         unit("in/s", Velocity, INCH, 1.0),
+        unit("ft/s", Velocity, 12.0 * INCH, 1.0),
+        unit("km/h", Velocity, 1.0, 3.6),
         unit("rad/s", RotationalSpeed, 1.0, 1.0),
         unit("deg/s", RotationalSpeed, PI, 180.0),
         unit("rpm", RotationalSpeed, 2.0 * PI, 60.0),
         unit("1/min", RotationalSpeed, 2.0 * PI, 60.0),
+        unit("m/s2", Acceleration, 1.0, 1.0),
+        unit("mm/s2", Acceleration, 1.0, 1e3),
         unit("Pa", Pressure, 1.0, 1.0),
         unit("hPa", Pressure, 100.0, 1.0),
         unit("kPa", Pressure, 1e3, 1.0),
+        unit("GPa", Pressure, 1e9, 1.0),
         unit("MPa", Pressure, 1e6, 1.0),
         unit("mbar", Pressure, 100.0, 1.0),
         unit("bar", Pressure, 1e5, 1.0),
         unit("psi", Pressure, POUND_FORCE, INCH * INCH),
+        unit("kgf/cm2", Pressure, 98_066.5, 1.0),
         unit("atm", Pressure, 101_325.0, 1.0),
         unit("N", Force, 1.0, 1.0),
         unit("kN", Force, 1e3, 1.0),
         unit("daN", Force, 10.0, 1.0),
         unit("kgf", Force, 9.806_65, 1.0),
         unit("lbf", Force, POUND_FORCE, 1.0),
+        unit("Nm", Torque, 1.0, 1.0),
+        unit("kNm", Torque, 1e3, 1.0),
         unit("m3/s", Flow, 1.0, 1.0),
         unit("m3/h", Flow, 1.0, 3600.0),
         unit("l/min", Flow, 1.0, 60_000.0),
@@ -165,10 +167,12 @@ const UNITS: [Unit; 64] = {
         unit("l/s", Flow, 1.0, 1e3),
         unit("ml/s", Flow, 1.0, 1e6),
         unit("cm3/s", Flow, 1.0, 1e6),
+        unit("cm3/min", Flow, 1.0, 6e7),
         unit("gpm", Flow, GALLON, 60.0),
         unit("m2", Area, 1.0, 1.0),
         unit("cm2", Area, 1.0, 1e4),
         unit("mm2", Area, 1.0, 1e6),
+        unit("in2", Area, INCH * INCH, 1.0),
         unit("degC", Temperature, 1.0, 1.0),
         unit("C", Temperature, 1.0, 1.0),
         Unit { name: "K", dimension: Temperature, multiply: 1.0, divide: 1.0, add: -273.15 },
@@ -179,9 +183,16 @@ const UNITS: [Unit; 64] = {
         unit("ns", Time, 1.0, 1e9),
         unit("min", Time, 60.0, 1.0),
         unit("h", Time, 3600.0, 1.0),
+        unit("d", Time, 86_400.0, 1.0),
+        unit("Hz", Frequency, 1.0, 1.0),
+        unit("kHz", Frequency, 1e3, 1.0),
+        unit("W", Power, 1.0, 1.0),
+        unit("kW", Power, 1e3, 1.0),
+        unit("kg", Mass, 1.0, 1.0),
         unit("V", Voltage, 1.0, 1.0),
         unit("mV", Voltage, 1.0, 1e3),
         unit("uV", Voltage, 1.0, 1e6),
+        unit("kV", Voltage, 1e3, 1.0),
         unit("A", Current, 1.0, 1.0),
         unit("mA", Current, 1.0, 1e3),
         unit("1", Number, 1.0, 1.0),
@@ -209,7 +220,7 @@ impl Unit {
         let name: String = name
             .trim()
             .chars()
-            .filter(|c| !c.is_whitespace() && *c != '^')
+            .filter(|c| !c.is_whitespace() && !['^', '·', '*', '\u{200b}'].contains(c))
             .map(|c| match c {
                 '²' => '2',
                 '³' => '3',
@@ -222,8 +233,7 @@ impl Unit {
             Some(rest) => format!("deg{rest}"),
             None => name,
         };
-        let spelling = SPELLINGS.iter().find(|(other, _)| name.eq_ignore_ascii_case(other));
-        let name = spelling.map_or(name, |(_, usual)| usual.to_string());
+        let name = unit_words::usual(&name).map_or(name, str::to_string);
         UNITS
             .iter()
             .find(|unit| unit.name == name)

@@ -14,6 +14,6 @@ mod topic_check;
 pub(crate) use late_stamps::{count_late, steps_back};
 pub(crate) use read_recording::{TopicCounts, truncated_after};
 pub use read_recording::{read_recording, read_recording_in_blocks};
-pub use report::{Gap, ReadReport};
+pub use report::{Gap, MappedUnit, ReadReport};
 pub use state_table::StateTable;
 pub(crate) use state_table::gaps;

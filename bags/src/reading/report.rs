@@ -7,6 +7,8 @@ use serde::Serialize;
 
 use rosbag2::{Damage, LostMessages, printable};
 
+use crate::map::{Dimension, SignalName};
+
 /// A pause in the state messages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Gap {
@@ -14,6 +16,17 @@ pub struct Gap {
     pub after: f64,
     /// Time from that sample to the next, s.
     pub length: f64,
+}
+
+/// What a mapped signal measures.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MappedUnit {
+    /// The signal.
+    pub signal: SignalName,
+    /// Unit of the numbers in the data.
+    pub unit: &'static str,
+    /// Dimension of the values after the scale of the map.
+    pub dimension: Dimension,
 }
 
 /// What was found in a bag, and what had to be done to make a recording of it.
@@ -56,6 +69,9 @@ pub struct ReadReport {
     pub sources: BTreeMap<String, Vec<String>>,
     /// What a map or a table could not give, and where a clock was set back, one line each.
     pub notes: Vec<String>,
+    /// What mapped signals measure, where the map or the data say so. Who knows the machine compares it.
+    #[serde(skip)]
+    pub mapped: Vec<MappedUnit>,
     /// Conditions under which a map leaves measurements out. Who knows the machine evaluates them.
     pub left_out_where: Vec<String>,
     /// First and last moment of each stretch in which a map leaves out all that a model is compared with, ns on the clock of the
@@ -105,6 +121,11 @@ impl ReadReport {
             }
         }
         self.left_out.extend(&piece.left_out);
+        for mapped in &piece.mapped {
+            if !self.mapped.contains(mapped) {
+                self.mapped.push(mapped.clone());
+            }
+        }
         self.add_block(ReadReport { gaps: Vec::new(), ..piece });
     }
 

@@ -2,12 +2,17 @@
 //! column.
 
 use super::Values;
-use super::dates::parse_date;
+use super::decimal::number;
+use super::time_cells::{TimeCells, TimeKind};
+use super::time_text::TimeText;
 use crate::map::Unit;
 
 /// SI prefixes that directly follow a number without a unit, and their factors. K is the kelvin.
 const PREFIXES: [(&str, f64); 9] =
     [("G", 1e9), ("M", 1e6), ("k", 1e3), ("m", 1e-3), ("u", 1e-6), ("µ", 1e-6), ("μ", 1e-6), ("n", 1e-9), ("p", 1e-12)];
+
+/// Longest part of a cell that is shown in a note, characters.
+const LONGEST_SHOWN: usize = 20;
 
 /// The suffix of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +48,7 @@ pub(super) fn read(cell: &str, decimal: char) -> Option<(f64, Suffix)> {
 }
 
 /// A unit after a number. Stricter than in a heading: `5-` is not a number with a unit `-`, and `5 M` is not in metres.
-fn unit(name: &str) -> Option<&'static str> {
+pub(super) fn unit(name: &str) -> Option<&'static str> {
     let found = Unit::named(name)?.name;
     let initial = |text: &str| text.chars().next();
     let other_case = initial(name).zip(initial(found)).is_some_and(|(a, b)| a != b && a.eq_ignore_ascii_case(&b));
@@ -52,7 +57,7 @@ fn unit(name: &str) -> Option<&'static str> {
 }
 
 /// Length in bytes of the number at the start of a text: sign, digits and separators, exponent.
-fn end_of_number(text: &str) -> usize {
+pub(super) fn end_of_number(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = usize::from(text.starts_with(['+', '-']));
     while bytes.get(end).is_some_and(|byte| byte.is_ascii_digit() || [b'.', b','].contains(byte)) {
@@ -68,31 +73,27 @@ fn end_of_number(text: &str) -> usize {
     end
 }
 
-/// The number in a cell without a suffix.
-pub(super) fn number(cell: &str, decimal: char) -> Option<f64> {
-    let cell = cell.trim();
-    if decimal == '.' {
-        return cell.parse().ok();
-    }
-    // With a decimal comma, a point separates thousands.
-    cell.replace('.', "").replace(',', ".").parse().ok()
-}
-
 /// Whether a cell marks a missing value.
 pub(super) fn is_missing(cell: &str) -> bool {
     let cell = cell.trim();
     cell.is_empty() || ["nan", "na", "n/a", "null", "none", "-", "--"].contains(&cell.to_lowercase().as_str())
 }
 
-/// The values of one column read so far.
-#[derive(Default)]
+/// The values of one column read so far. The first cell that is a number or a time decides which of them the column has.
+enum Known {
+    Nothing,
+    Numbers(Vec<f64>),
+    Times(TimeCells),
+}
+
+/// The cells of one column read so far.
 pub(super) struct Cells {
-    /// `None` before the first cell that is not empty: that cell decides whether the column contains dates.
-    values: Option<Values>,
-    /// Number of empty cells before the first value.
+    values: Known,
+    /// Number of cells before the first value.
     missing: usize,
-    /// Number of cells that are neither a number nor empty.
+    /// Number of cells that are neither a number nor empty, and the first of them.
     bad: usize,
+    first_bad: String,
     /// Unit in the heading.
     heading: Option<String>,
     /// Unit of all cells, if the heading gives none.
@@ -109,43 +110,81 @@ pub(super) struct Cells {
 impl Cells {
     /// A column whose heading gives this unit.
     pub fn new(heading: Option<String>) -> Cells {
-        Cells { heading, ..Cells::default() }
+        Cells {
+            values: Known::Nothing,
+            missing: 0,
+            bad: 0,
+            first_bad: String::new(),
+            heading,
+            unit: None,
+            without_unit: 0,
+            other_unit: 0,
+            doubtful: 0,
+            first_doubtful: String::new(),
+        }
     }
 
     pub fn push(&mut self, cell: &str, decimal: char) {
-        if self.values.is_none() {
-            if is_missing(cell) {
-                self.missing += 1;
-                return;
-            }
-            self.values = Some(match parse_date(cell) {
-                Some(_) => Values::Stamps(vec![None; self.missing]),
-                None => Values::Numbers(vec![f64::NAN; self.missing]),
-            });
-        }
-        if let Some(Values::Stamps(stamps)) = &mut self.values {
-            let stamp = parse_date(cell);
-            self.bad += usize::from(stamp.is_none() && !is_missing(cell));
-            stamps.push(stamp);
+        // Nearly all cells are plain numbers.
+        if let (Known::Numbers(numbers), '.', None) = (&mut self.values, decimal, self.unit)
+            && let Some(number) = cell.parse().ok().filter(|number: &f64| !number.is_nan())
+        {
+            self.without_unit += 1;
+            numbers.push(number);
             return;
         }
-        let value = self.value(cell, decimal);
-        if let Some(Values::Numbers(numbers)) = &mut self.values {
-            numbers.push(value);
+        match &mut self.values {
+            Known::Numbers(_) => {
+                let value = self.value(cell, decimal);
+                if let Known::Numbers(numbers) = &mut self.values {
+                    numbers.push(value);
+                }
+            }
+            Known::Times(times) => {
+                if !times.push(cell) && !is_missing(cell) {
+                    self.is_bad(cell);
+                }
+            }
+            Known::Nothing => self.first(cell, decimal),
+        }
+    }
+
+    /// A cell before any value.
+    fn first(&mut self, cell: &str, decimal: char) {
+        if is_missing(cell) {
+            self.missing += 1;
+        } else if read(cell, decimal).is_some() {
+            self.values = Known::Numbers(vec![f64::NAN; self.missing]);
+            self.push(cell, decimal);
+        } else if TimeText::of(cell).is_some() {
+            self.values = Known::Times(TimeCells::after(self.missing));
+            self.push(cell, decimal);
+        } else {
+            self.is_bad(cell);
+            self.missing += 1;
+        }
+    }
+
+    fn is_bad(&mut self, cell: &str) {
+        self.bad += 1;
+        if self.first_bad.is_empty() {
+            self.first_bad = cell.chars().take(LONGEST_SHOWN).collect();
         }
     }
 
     /// The number in a cell; `NaN` if it is not a number, or its unit differs from that of the column.
     fn value(&mut self, cell: &str, decimal: char) -> f64 {
         let Some((number, suffix)) = read(cell, decimal) else {
-            self.bad += usize::from(!is_missing(cell));
+            if !is_missing(cell) {
+                self.is_bad(cell);
+            }
             return f64::NAN;
         };
         let fits = match suffix {
             Suffix::Milli if self.heading.as_deref() == Some("m") => {
                 self.doubtful += 1;
                 if self.first_doubtful.is_empty() {
-                    self.first_doubtful = cell.chars().take(20).collect();
+                    self.first_doubtful = cell.chars().take(LONGEST_SHOWN).collect();
                 }
                 return f64::NAN;
             }
@@ -169,12 +208,24 @@ impl Cells {
         if fits { number } else { f64::NAN }
     }
 
-    /// Unit and values of the column with this name; adds imperfections to `notes`.
-    pub fn finish(self, name: &str, notes: &mut Vec<String>) -> (Option<String>, Values) {
+    /// Unit and values of the column with this name, and what it is if it has times; adds imperfections to `notes`.
+    pub fn finish(self, name: &str, notes: &mut Vec<String>) -> (Option<String>, Values, Option<TimeKind>) {
         if self.bad > 0 {
-            let bad = self.bad;
-            notes.push(format!("column {name}: {bad} cells are no number and were taken as not measured"));
+            let (bad, first) = (self.bad, &self.first_bad);
+            let what = if matches!(self.values, Known::Times(_)) { "time" } else { "number" };
+            notes.push(format!(
+                "column {name}: {bad} cells are no {what} and were taken as not measured; the first is \"{first}\""
+            ));
         }
+        let values = match self.values {
+            Known::Nothing => Values::Numbers(vec![f64::NAN; self.missing]),
+            Known::Numbers(numbers) => Values::Numbers(numbers),
+            Known::Times(times) => {
+                let (kind, values) = times.finish(name, notes);
+                let unit = matches!(values, Values::Numbers(_)).then(|| "s".to_string());
+                return (unit, values, Some(kind));
+            }
+        };
         let unit = self.heading.or(self.unit.map(str::to_string));
         if self.other_unit > 0 {
             let (count, than) = (self.other_unit, unit.as_deref().map_or("the others", |unit| unit));
@@ -190,7 +241,7 @@ impl Cells {
                  \"{metres} m\", or numbers without m"
             ));
         }
-        (unit, self.values.unwrap_or_else(|| Values::Numbers(vec![f64::NAN; self.missing])))
+        (unit, values, None)
     }
 }
 
@@ -241,8 +292,8 @@ mod tests {
         cells.iter().for_each(|cell| column.push(cell, '.'));
         let mut notes = Vec::new();
         match column.finish("x", &mut notes) {
-            (unit, Values::Numbers(numbers)) => (unit, numbers, notes),
-            (_, other) => panic!("{other:?}"),
+            (unit, Values::Numbers(numbers), None) => (unit, numbers, notes),
+            (_, other, _) => panic!("{other:?}"),
         }
     }
 

@@ -1,21 +1,19 @@
-//! Parses dates in cells.
+//! Dates in maps and in the cells of spreadsheets.
 
-use jiff::civil::DateTime;
-use jiff::{Timestamp, tz::TimeZone};
+use super::time_text::{DAY, Day, TimeText};
 
-/// An ISO 8601 date with time, in ns since the epoch; UTC if it has no time zone. `None` for anything else.
+/// A date, in ns since the epoch; UTC if it has no time zone. `None` for anything else, and where day and month may be
+/// exchanged.
 pub fn parse_date(text: &str) -> Option<i64> {
-    let text = text.trim();
-    // Numbers are the common case and are never dates.
-    if text.len() < 10 || !text.as_bytes().get(4).is_some_and(|sign| [b'-', b'/'].contains(sign)) {
-        return None;
+    match TimeText::of(text)? {
+        TimeText { day: Some(Day::Known(day)), clock, .. } => stamp(day, clock.unwrap_or(0)),
+        _ => None,
     }
-    let text = text.replacen('/', "-", 2);
-    let stamp = match text.parse::<Timestamp>() {
-        Ok(stamp) => stamp,
-        Err(_) => TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok()?,
-    };
-    i64::try_from(stamp.as_nanosecond()).ok()
+}
+
+/// The stamp of a moment on a day, ns since the epoch; `None` outside 1678 to 2262.
+pub(super) fn stamp(day: i64, clock: i64) -> Option<i64> {
+    day.checked_mul(DAY)?.checked_add(clock)
 }
 
 #[cfg(test)]
@@ -28,7 +26,8 @@ mod tests {
         for text in ["2017-07-14T02:40:00.25Z", "2017-07-14 02:40:00.25", "2017-07-14T04:40:00.25+02:00"] {
             assert_eq!(parse_date(text), wanted, "{text}");
         }
-        for text in ["", "1500000000", "12.5", "2017-13-14T02:40:00Z", "1234-5678-9", "äöüäöüäöü"] {
+        for text in ["", "1500000000", "12.5", "2017-13-14T02:40:00Z", "1234-5678-9", "äöüäöüäöü", "3/4/2017 02:40:00"]
+        {
             assert_eq!(parse_date(text), None, "{text}");
         }
     }

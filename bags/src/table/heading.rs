@@ -30,15 +30,26 @@ pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     (heading.to_string(), None)
 }
 
+/// What stands in square brackets at the end of a heading.
+pub(super) fn brackets(heading: &str) -> Option<&str> {
+    let (_, rest) = heading.strip_suffix(']')?.rsplit_once('[')?;
+    (!rest.is_empty() && !rest.bytes().all(|byte| byte.is_ascii_digit())).then_some(rest)
+}
+
 /// Whether a suffix without brackets is a unit: `p_A` is the pressure at port A, not a current, and `x_1` is the first
 /// x.
 fn is_telling(unit: &str) -> bool {
-    unit.chars().count() > 1 || ["s", "m", "N", "%"].contains(&unit)
+    unit.chars().count() > 1 || ["s", "m", "N", "V", "%"].contains(&unit)
 }
+
+/// Units that are words of a name where no brackets mark them: `of_day`, `pressure second`.
+const NOUNS: [&str; 12] =
+    ["day", "days", "second", "minute", "hour", "turn", "turns", "foot", "pound", "count", "bit", "cps"];
 
 /// Whether a suffix that could be a unit is a word: `Boom Ms` is the measured boom, not a time.
 fn is_a_word(ending: &str, dimension: Dimension) -> bool {
-    dimension == Dimension::Time && ending.chars().any(char::is_uppercase)
+    let is_noun = NOUNS.contains(&ending.to_lowercase().as_str());
+    is_noun || dimension == Dimension::Time && ending.chars().any(char::is_uppercase)
 }
 
 #[cfg(test)]
@@ -59,6 +70,7 @@ mod tests {
             ("Boom Ms", "Boom Ms", None),
             ("\u{feff}time", "time", None),
             ("p_A", "p_A", None),
+            ("u_V", "u_V", Some("V")),
             ("x_1", "x_1", None),
             ("3 bar", "3 bar", None),
             ("1 [bar]", "1", Some("bar")),

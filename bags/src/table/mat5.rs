@@ -5,7 +5,8 @@ use std::io::Read;
 use rosbag2::{LimitError, ReadLimits};
 
 use super::fault::TableFault;
-use super::mat::{Budget, Number, Variable};
+use super::mat::{Budget, Content, Number, Variable};
+use super::split::decoded;
 
 const HEADER: usize = 128;
 /// Maximum nesting of structs.
@@ -18,6 +19,14 @@ const NAME_LIMIT: usize = 256;
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 const STRUCT_CLASS: u8 = 2;
+const CHAR_CLASS: u8 = 4;
+/// Objects of a class: those of old classes, and all others, as a `timeseries`.
+const OBJECT_CLASSES: [u8; 2] = [3, 17];
+const UINT8_CLASS: u8 = 9;
+/// Maximum number of elements of an array of structs.
+const ELEMENT_LIMIT: f64 = 1024.0;
+/// Maximum length of a text that may be a name or a unit.
+const TEXT_LIMIT: usize = 256;
 /// Classes of real numbers: double, single, and integers of 8 to 64 bits.
 const NUMERIC_CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
 const COMPLEX_FLAG: u8 = 0x08;
@@ -27,10 +36,11 @@ pub(super) fn is_mat5(bytes: &[u8]) -> bool {
     matches!(bytes.get(124..128), Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']))
 }
 
-/// The real numeric arrays in a file, those in structs as `struct.field`; others are added to `notes`.
-pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) -> Result<Vec<Variable>, TableFault> {
+/// The real numeric arrays and the texts in a file, those in structs as `struct.field` and `structs(2).field`; others are added to
+/// `notes`.
+pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) -> Result<Content, TableFault> {
     let big_endian = bytes.get(126) == Some(&b'M');
-    let mut found = Found { variables: Vec::new(), notes, budget: Budget::new(limits, bytes), fault: None };
+    let mut found = Found { content: Content::default(), notes, budget: Budget::new(limits, bytes), fault: None };
     let mut reader = Elements { rest: bytes.get(HEADER..).unwrap_or_default(), big_endian };
     while !reader.rest.is_empty() {
         let left = reader.rest.len();
@@ -50,7 +60,7 @@ pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) 
             Err(error) => found.notes.push(format!("a variable cannot be unpacked: {error}")),
         }
     }
-    Ok(found.variables)
+    Ok(found.content)
 }
 
 /// The bytes of a compressed variable. No more bytes are decompressed than its own tag announces.
@@ -114,8 +124,22 @@ fn name_in(bytes: &[u8]) -> String {
     String::from_utf8_lossy(name.get(..NAME_LIMIT).unwrap_or(name)).into_owned()
 }
 
+/// The text of an array of characters: in 8 or 16 bits each.
+fn text_in(element: &Element, big_endian: bool) -> String {
+    let text = match element.kind {
+        // 16 bits: MATLAB writes them as numbers or as UTF-16.
+        4 | 17 => {
+            let pairs = element.content.chunks_exact(2).take(TEXT_LIMIT);
+            let units = pairs.map(|pair| if big_endian { [pair[1], pair[0]] } else { [pair[0], pair[1]] });
+            String::from_utf16_lossy(&units.map(u16::from_le_bytes).collect::<Vec<u16>>())
+        }
+        _ => decoded(element.content.get(..TEXT_LIMIT).unwrap_or(element.content)).into_owned(),
+    };
+    text.trim_matches(|c: char| c.is_control() || c.is_whitespace()).to_string()
+}
+
 struct Found<'n> {
-    variables: Vec<Variable>,
+    content: Content,
     notes: &'n mut Vec<String>,
     budget: Budget<'n>,
     /// Set when the budget is exhausted.
@@ -150,12 +174,31 @@ impl Found<'_> {
         let flags = parts.next()?;
         let flags = Elements { rest: flags.content, big_endian }.word(0)?;
         let (class, flags) = ((flags & 0xff) as u8, (flags >> 8 & 0xff) as u8);
+        if OBJECT_CLASSES.contains(&class) {
+            // Objects of old classes have a size, as all other arrays.
+            if class == OBJECT_CLASSES[0] {
+                parts.next()?;
+            }
+            let name = name.unwrap_or_else(|| parts.next().map(|part| name_in(part.content)).unwrap_or_default());
+            self.content.objects.push(name);
+            return Some(());
+        }
         let dimensions = parts.next()?.content;
         let dimensions = Number::I32.read(dimensions.get(..4 * DIMENSION_LIMIT).unwrap_or(dimensions), big_endian);
         let own_name = name_in(parts.next()?.content);
         let name = name.unwrap_or(own_name);
-        if class == STRUCT_CLASS && dimensions.iter().all(|&size| size == 1.0) && depth < DEPTH_LIMIT {
-            return self.structure(&mut parts, &name, depth);
+        let elements: f64 = dimensions.iter().product();
+        if class == STRUCT_CLASS && (1.0..=ELEMENT_LIMIT).contains(&elements) && depth < DEPTH_LIMIT {
+            return self.structures(&mut parts, &name, elements as usize, depth);
+        }
+        if class == CHAR_CLASS && depth > 0 {
+            let text = text_in(&parts.next()?, big_endian);
+            self.content.texts.push((name, text));
+            return Some(());
+        }
+        // Where MATLAB keeps the content of objects.
+        if name.is_empty() && class == UINT8_CLASS && !self.content.objects.is_empty() {
+            return Some(());
         }
         if !NUMERIC_CLASSES.contains(&class) || flags & COMPLEX_FLAG != 0 {
             self.notes.push(format!("{name} is no real numeric array and was left out"));
@@ -183,20 +226,23 @@ impl Found<'_> {
             self.notes.push(format!("{name} has {} values instead of {announced} and was left out", values.len()));
             return Some(());
         }
-        self.variables.push(Variable { name, rows, values });
+        self.content.variables.push(Variable { name, rows, values });
         Some(())
     }
 
-    /// The fields of a single struct.
-    fn structure(&mut self, parts: &mut Elements, name: &str, depth: usize) -> Option<()> {
+    /// The fields of the structs in an array.
+    fn structures(&mut self, parts: &mut Elements, name: &str, elements: usize, depth: usize) -> Option<()> {
         let length = Number::I32.read(parts.next()?.content, parts.big_endian);
         let length =
             length.first().filter(|&&length| (1.0..=256.0).contains(&length)).map(|&length| length as usize)?;
         let names = parts.next()?.content;
-        for field in names.chunks_exact(length) {
-            let field = name_in(field);
-            let element = parts.next()?;
-            self.matrix(element.content, parts.big_endian, Some(format!("{name}.{field}")), depth + 1)?;
+        for number in 1..=elements {
+            let name = if elements == 1 { name.to_string() } else { format!("{name}({number})") };
+            for field in names.chunks_exact(length) {
+                let field = name_in(field);
+                let element = parts.next()?;
+                self.matrix(element.content, parts.big_endian, Some(format!("{name}.{field}")), depth + 1)?;
+            }
         }
         Some(())
     }

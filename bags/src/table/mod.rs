@@ -1,12 +1,21 @@
 //! Reads tables: columns of numbers from text files, spreadsheets, MATLAB files and Parquet files.
 
 mod cell;
+mod clock_columns;
 mod dates;
+mod decimal;
+mod encoding;
 mod fault;
 mod format;
 #[cfg(feature = "tables")]
 mod guard;
+#[cfg(feature = "tables")]
+mod gzip;
+mod head_rows;
 mod heading;
+mod headings;
+mod keyed_lines;
+mod layout;
 #[cfg(feature = "tables")]
 mod mat;
 #[cfg(feature = "tables")]
@@ -15,10 +24,12 @@ mod mat4;
 mod mat5;
 #[cfg(feature = "tables")]
 mod parquet;
-mod preamble;
 mod sampling;
+mod split;
 mod text;
 mod text_lines;
+mod time_cells;
+mod time_text;
 #[cfg(feature = "tables")]
 mod xlsx;
 
@@ -36,6 +47,7 @@ pub use dates::parse_date;
 pub use format::TableFormat;
 pub(crate) use heading::split as heading_of;
 pub use sampling::Sampling;
+pub(crate) use time_text::FORMS as TIME_FORMS;
 
 /// The values of one column.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +82,8 @@ pub struct Column {
     pub unit: Option<String>,
     /// The values.
     pub values: Values,
+    /// Index of the column with its times, where the columns of a table have different ones.
+    pub times: Option<usize>,
 }
 
 /// A table.
@@ -84,12 +98,17 @@ pub struct Table {
 }
 
 impl Table {
-    /// Whether the file is a table, according to its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.xlsx`, `.xlsm`,
-    /// `.mat`, `.parquet` or `.pq`.
+    /// Whether the file is a table, according to its extension: `.csv`, `.tsv`, `.tab`, `.txt`, `.dat`, `.lvm`, `.asc`, `.prn`, `.log`,
+    /// each also with `.gz`, `.xlsx`, `.xlsm`, `.mat`, `.parquet` or `.pq`.
     pub fn is_table(path: &Path) -> bool {
-        let ends = ["csv", "tsv", "txt", "dat", "xlsx", "xlsm", "mat", "parquet", "pq"];
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        path.is_file() && extension.is_some_and(|end| ends.contains(&end.as_str()))
+        let extension = |path: &Path| path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let is_text = |end: &str| TEXTS.contains(&end);
+        let is_known = match extension(path).as_deref() {
+            Some("gz") => extension(Path::new(path.file_stem().unwrap_or_default())).is_some_and(|end| is_text(&end)),
+            Some(end) => is_text(end) || ["xlsx", "xlsm", "mat", "parquet", "pq"].contains(&end),
+            None => false,
+        };
+        is_known && path.is_file()
     }
 
     /// Reads a table.
@@ -166,9 +185,13 @@ impl Table {
     }
 }
 
+/// Extensions of text tables.
+const TEXTS: [&str; 9] = ["csv", "tsv", "tab", "txt", "dat", "lvm", "asc", "prn", "log"];
+
 /// The kinds of tables that are not text, by file extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Packed {
+    Gzip,
     Mat,
     Parquet,
     Xlsx,
@@ -179,6 +202,7 @@ impl Packed {
     fn of(path: &Path) -> Option<Packed> {
         let extension = path.extension()?.to_string_lossy().to_lowercase();
         match extension.as_str() {
+            "gz" => Some(Packed::Gzip),
             "mat" => Some(Packed::Mat),
             "parquet" | "pq" => Some(Packed::Parquet),
             "xlsx" | "xlsm" => Some(Packed::Xlsx),
@@ -196,6 +220,7 @@ impl Packed {
         // A file that is held in memory as a whole may be as large as its values.
         let whole = read_regular(path, limits.memory)?;
         Ok(match self {
+            Packed::Gzip => gzip::parse(&whole, format, limits),
             Packed::Mat => mat::parse(&whole, limits),
             Packed::Parquet => parquet::parse(whole.into(), limits),
             Packed::Xlsx => xlsx::parse(whole, format, limits),
@@ -205,6 +230,7 @@ impl Packed {
     #[cfg(not(feature = "tables"))]
     fn read(self, path: &Path, _: &TableFormat, _: &ReadLimits) -> Result<Result<Table, TableFault>, BagError> {
         let what = match self {
+            Packed::Gzip => ".gz",
             Packed::Mat => ".mat",
             Packed::Parquet => ".parquet",
             Packed::Xlsx => ".xlsx",

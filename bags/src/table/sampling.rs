@@ -79,7 +79,12 @@ impl Sampling {
             return None;
         }
         let (key, unit_of_key) = key(before);
+        let written = rest;
         let (number, rest) = number(rest, delimiter, decimal)?;
+        // One for each channel.
+        let of_first = &written[..written.len() - rest.len()];
+        let mut others = rest.split(char::from(delimiter)).map(str::trim).filter(|cell| !cell.is_empty());
+        let rest = if delimiter != b' ' && others.all(|other| other == of_first) { "" } else { rest };
         let unit = unit(rest, unit_of_key, delimiter)?;
         let is_rate = RATES.contains(&key.as_str());
         // The key of LabVIEW; without its underscore it may be a length.
@@ -206,6 +211,8 @@ mod tests {
         assert_eq!(comma, Some(1000.0));
         let german = Sampling::of("Abtastrate: 2,5 kHz", b';', ',').map(|sampling| sampling.rate);
         assert_eq!(german, Some(2500.0));
+        let each = Sampling::of("Delta_X\t0,002\t0,002\t", b'\t', ',').map(|sampling| sampling.rate);
+        assert_eq!(each, Some(500.0));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::rc::Rc;
 use rosbag2::{Limit, LimitError};
 
 use super::fault::TableFault;
+use super::split::decoded;
 
 /// A line and its offset.
 pub(super) struct Line {
@@ -44,7 +45,7 @@ pub(super) fn head<R: Read + Seek>(
         begin += 3;
     }
     let mut head = Head { skipped: Vec::new(), lines: Vec::new() };
-    let shown = |line: &[u8]| String::from_utf8_lossy(line).trim_end_matches(['\n', '\r']).to_string();
+    let shown = |line: &[u8]| decoded(line).trim_end_matches(['\n', '\r']).to_string();
     let mut kept = 0;
     for _ in 0..skip {
         let Some(line) = line(&mut reader, most)? else { break };
@@ -64,7 +65,42 @@ pub(super) fn head<R: Read + Seek>(
         }
         begin += line.len() as u64;
     }
+    head.lines = with_whole_cells(head.lines);
     Ok(head)
+}
+
+/// Maximum number of lines of one row: a heading may have a few.
+const LINES_OF_A_ROW: usize = 10;
+
+/// Joins lines that a cell in quotation marks goes across.
+fn with_whole_cells(lines: Vec<Line>) -> Vec<Line> {
+    let is_open = |line: &Line| line.text.bytes().filter(|byte| *byte == b'"').count() % 2 == 1;
+    let mut whole: Vec<Line> = Vec::new();
+    let mut lines = lines.into_iter();
+    while let Some(mut line) = lines.next() {
+        let mut taken = 1;
+        while is_open(&line) && taken < LINES_OF_A_ROW {
+            let Some(next) = lines.next() else { break };
+            line.text = format!("{} {}", line.text, next.text);
+            taken += 1;
+        }
+        whole.push(line);
+    }
+    whole
+}
+
+/// Number of lines from byte `start` on.
+pub(super) fn count<R: Read + Seek>(source: &mut R, start: u64) -> Result<usize> {
+    source.seek(SeekFrom::Start(start))?;
+    let mut buffer = [0; 1 << 14];
+    let mut lines = 1;
+    loop {
+        let read = source.read(&mut buffer)?;
+        if read == 0 {
+            return Ok(lines);
+        }
+        lines += buffer[..read].iter().filter(|byte| **byte == b'\n').count();
+    }
 }
 
 /// The next line with its line end, at most `most` bytes.
@@ -143,7 +179,7 @@ impl<R: BufRead> Read for Squeezed<R> {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
         if self.position == self.line.len() {
             let Some(line) = line(&mut self.reader, self.most)? else { return Ok(0) };
-            let text = String::from_utf8_lossy(&line);
+            let text = decoded(&line);
             let columns: Vec<&str> = text.split_whitespace().collect();
             self.line = columns.join("\t").into_bytes();
             self.line.push(b'\n');

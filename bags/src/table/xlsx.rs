@@ -6,6 +6,7 @@ use std::io::{Cursor, Read};
 use calamine::{DataRef, ExcelDateTime, Reader, SheetType, Xlsx, XlsxError};
 use rosbag2::{Limit, ReadLimits};
 
+use super::decimal::{Evidence, number};
 use super::fault::TableFault;
 use super::{Table, TableFormat, guard, text};
 
@@ -30,10 +31,15 @@ pub(super) fn parse(bytes: Vec<u8>, format: &TableFormat, limits: &ReadLimits) -
     let sheet = guard::without_panic(|| check_sizes(&bytes, limits).and_then(|()| sheet(&bytes, format, limits)))
         .unwrap_or_else(|panic| Err(format!("the spreadsheet is broken: {panic}").into()))?;
     // The text was written in this format.
+    let decimal = format.decimal.unwrap_or_else(|| sheet.evidence.decimal(b'\t'));
+    if ![',', '.'].contains(&decimal) {
+        return Err(format!("decimal = \"{decimal}\" must be . or ,").into());
+    }
     let format = TableFormat { delimiter: Some("tab".to_string()), decimal: Some('.'), ..format.clone() };
-    let length = sheet.text.len() as u64;
+    let text = with_points(sheet.text, decimal)?;
+    let length = text.len() as u64;
     limits.check_memory(length, size)?;
-    let mut table = text::parse(&mut Cursor::new(sheet.text), length, &format, limits)?;
+    let mut table = text::parse(&mut Cursor::new(text), length, &format, limits)?;
     table.notes.extend(sheet.note);
     Ok(table)
 }
@@ -87,6 +93,8 @@ fn announced(part: &[u8]) -> impl Iterator<Item = u64> {
 /// A sheet as tab-separated text.
 struct Sheet {
     text: Vec<u8>,
+    /// What numbers in cells of text say about their decimal sign.
+    evidence: Evidence,
     note: Option<String>,
 }
 
@@ -116,11 +124,12 @@ fn sheet(bytes: &[u8], format: &TableFormat, limits: &ReadLimits) -> Result<Shee
         .flexible(true)
         .from_writer(Vec::new());
     let mut row: (u32, Vec<String>) = (0, Vec::new());
+    let mut evidence = Evidence::default();
     // Memory for the text written so far, and for the cells of the current row.
     let mut written = 0_u64;
     while let Some(cell) = cells.next_cell().map_err(broken)? {
         let (number, column) = cell.get_position();
-        let value = shown(cell.get_value(), is_1904);
+        let value = shown(cell.get_value(), is_1904, &mut evidence);
         let column = column as usize;
         if value.is_empty() || column >= limits.fields {
             continue;
@@ -144,7 +153,7 @@ fn sheet(bytes: &[u8], format: &TableFormat, limits: &ReadLimits) -> Result<Shee
     let note = (others > 0 && format.sheet.is_none()).then(|| {
         format!("sheet \"{name}\" was read; {others} more: give [table] sheet for {}", sheets[1..].join(", "))
     });
-    Ok(Sheet { text, note })
+    Ok(Sheet { text, evidence, note })
 }
 
 fn write(writer: &mut csv::Writer<Vec<u8>>, row: &mut Vec<String>) -> Result<(), TableFault> {
@@ -156,13 +165,14 @@ fn write(writer: &mut csv::Writer<Vec<u8>>, row: &mut Vec<String>) -> Result<(),
 }
 
 /// A cell as text; empty for an error or an empty cell.
-fn shown(value: &DataRef, is_1904: bool) -> String {
+fn shown(value: &DataRef, is_1904: bool, evidence: &mut Evidence) -> String {
     match value {
         DataRef::Int(number) => number.to_string(),
         DataRef::Float(number) => number.to_string(),
         DataRef::Bool(truth) => u8::from(*truth).to_string(),
-        DataRef::String(text) | DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => in_a_line(text),
-        DataRef::SharedString(text) => in_a_line(text),
+        DataRef::String(text) => text_or_number(text, evidence),
+        DataRef::SharedString(text) => text_or_number(text, evidence),
+        DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => in_a_line(text),
         DataRef::DateTime(date) => date_or_time(date, is_1904),
         DataRef::Error(_) | DataRef::Empty => String::new(),
     }
@@ -170,6 +180,41 @@ fn shown(value: &DataRef, is_1904: bool) -> String {
 
 fn in_a_line(text: &str) -> String {
     text.chars().take(LONGEST_TEXT).map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// Before a number in a cell of text, whose decimal sign is known only when all cells are. No other text has it.
+const NUMBER_AS_TEXT: char = '\u{1}';
+
+/// A text; a number that was typed or imported as one is marked.
+fn text_or_number(text: &str, evidence: &mut Evidence) -> String {
+    let line = in_a_line(text);
+    let digits = line.trim();
+    let is_number = [',', '.'].into_iter().any(|decimal| number(digits, decimal).is_some_and(f64::is_finite));
+    if !is_number || !digits.contains([',', '.']) {
+        return line;
+    }
+    evidence.add(digits);
+    format!("{NUMBER_AS_TEXT}{digits}")
+}
+
+/// The text of a sheet with a decimal point in all numbers; one that is none with this decimal sign stays as it is written.
+fn with_points(text: Vec<u8>, decimal: char) -> Result<Vec<u8>, TableFault> {
+    let mark = NUMBER_AS_TEXT as u8;
+    if !text.contains(&mark) {
+        return Ok(text);
+    }
+    let text = String::from_utf8(text).map_err(|error| TableFault::from(error.to_string()))?;
+    let mut parts = text.split(NUMBER_AS_TEXT);
+    let mut whole = parts.next().unwrap_or_default().to_string();
+    for part in parts {
+        let end = part.find(['"', '\t', '\n']).unwrap_or(part.len());
+        match number(&part[..end], decimal) {
+            Some(value) => whole.push_str(&value.to_string()),
+            None => whole.push_str(&part[..end]),
+        }
+        whole.push_str(&part[end..]);
+    }
+    Ok(whole.into_bytes())
 }
 
 /// Day 0 of the 1900 date system, in days before 1970; and of the 1904 date system, in days after it.

@@ -191,8 +191,11 @@ fn the_speed_of_a_pump_is_no_velocity_of_a_piston() {
         assert_guessed(&guessed, &[("load.displacement", "cyl_pos_mm", "mm"), ("pump_flow", name, unit)]);
         let flow = guessed.signals.iter().find(|s| s.source.signal.to_string() == "pump_flow").unwrap();
         assert!(flow.unit_reason.contains("placeholder"), "{}", flow.unit_reason);
-        // The guess can be used as it is, and with the true scale: 10 cm3 per turn.
-        let text = guessed.to_text().unwrap().replace(&format!("1 m3/s/{unit}"), &format!("0.01 l/min/{unit}"));
+        // The guess asks for the scale, and is used with the true one: 10 cm3 per turn.
+        let text = guessed.to_text().unwrap();
+        let asked = text.parse::<TopicMap>().unwrap_err().to_string();
+        assert!(asked.contains("pump_flow is a volume flow") && asked.contains("give `scale`"), "{asked}");
+        let text = text.replace(&format!("# scale = \"1 m3/s/{unit}\""), &format!("scale = \"0.01 l/min/{unit}\""));
         let (recording, _) = read_mapped(&path, &text.parse().unwrap()).unwrap();
         assert!((recording.pump_flow[0] - 500.0 * 1e-5 / 60.0).abs() < 1e-12, "{}", recording.pump_flow[0]);
     }
@@ -289,4 +292,72 @@ fn what_may_be_another_is_not_sure() {
     assert_eq!(of(&guessed, "arm.displacement"), (Confidence::Chosen, "position 4".to_string(), vec![]));
     assert!(guessed.left.contains(&"position 3".to_string()), "{:?}", guessed.left);
     assert_eq!(guessed.to_text().unwrap().parse::<TopicMap>().unwrap().signals.len(), 2);
+}
+
+/// What the input of a valve shows: it goes with the speed of the piston, without being one.
+#[test]
+fn a_ratio_that_no_units_have_is_evidence_against() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    let velocity_of = |factor: f64| {
+        let mut text = "t [s],x [mm],v\n".to_string();
+        for i in 0..1000 {
+            let t = f64::from(i) * 5e-3;
+            text += &format!("{t},{},{}\n", 50.0 + 20.0 * (3.0 * t).sin(), factor * 60.0 * (3.0 * t).cos());
+        }
+        std::fs::write(&path, text).unwrap();
+        let guessed = guess(&path, "load").unwrap();
+        guessed
+            .signals
+            .iter()
+            .any(|found| found.source.signal.to_string() == "load.velocity" && found.confidence > Confidence::Unsure)
+    };
+    // mm/s and m/s, but nothing between.
+    assert!(velocity_of(1.0) && velocity_of(1e-3));
+    assert!(!velocity_of(1.0 / 58.0));
+}
+
+#[test]
+fn columns_of_one_heading_are_told_by_number() {
+    let columns =
+        [("t", 0.0, 1.0), ("Pressure [bar]", 90.0, 40.0), ("Pressure [bar]", 50.0, 30.0), ("x [mm]", 40.0, 9.0)];
+    let (_folder, path) = swings(&columns);
+    let guessed = guess(&path, "load").unwrap();
+    let found: Vec<String> =
+        pairs(&guessed).into_iter().map(|(signal, origin, _)| format!("{signal} {origin}")).collect();
+    assert!(
+        found.contains(&"load.cap_pressure 2".to_string()) && found.contains(&"load.rod_pressure 3".to_string()),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_column_that_is_nearly_empty_is_not_likely() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    let mut text = "t,x [mm],F [kN]\n".to_string();
+    for i in 0..1000 {
+        let force = if i < 6 { "3.1" } else { "" };
+        text += &format!("{},{},{force}\n", f64::from(i) * 1e-2, f64::from(i % 100));
+    }
+    std::fs::write(&path, text).unwrap();
+    let guessed = guess(&path, "load").unwrap();
+    let force = guessed.signals.iter().find(|found| found.source.signal.to_string() == "load.rod_force").unwrap();
+    assert_eq!(force.confidence, Confidence::Unsure, "{}", force.reason);
+    assert!(force.reason.contains("99.4 % of its cells are empty"), "{}", force.reason);
+}
+
+#[test]
+fn a_rate_that_nobody_knows_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    let mut text = "x [mm],p_A [bar]\n".to_string();
+    (0..100).for_each(|i| text += &format!("{},{}\n", i % 7, i % 5));
+    std::fs::write(&path, text).unwrap();
+    let guessed = guess(&path, "load").unwrap();
+    let text = guessed.to_text().unwrap();
+    assert!(text.contains("\n# rate = 500.0 ") && text.contains("no time found"), "{text}");
+    let asked = read_mapped(&path, &text.parse().unwrap()).unwrap_err().to_string();
+    assert!(asked.contains("or `rate` in samples per second"), "{asked}");
+    assert!(read_mapped(&path, &guessed.map()).is_err());
 }

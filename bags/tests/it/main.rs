@@ -27,5 +27,6 @@ mod spreadsheets;
 #[cfg(feature = "sqlite")]
 mod sqlite_bags;
 mod support;
+mod table_matrix;
 #[cfg(feature = "tables")]
 mod tables;

@@ -119,11 +119,85 @@ fn what_is_missing_is_told_in_one_line() {
         (error("", signals), "no rows"),
         (error("t,x\n0,1\n", &format!("[clock]\ntopic = \"/a\"\n{signals}")), "is taken from a topic"),
         (error("t,x\n0,1\n", &format!("[clock]\nrate = 5.0\nstart = \"today\"\n{signals}")), "start = \"today\""),
-        (error("t,x\nnan,1\n", signals), "has no sample"),
+        (error("t,x\nnan,1\n", signals), "the clock (column t) has no time; times are numbers"),
+        (error("Time,x\n20.11.2023,1\n20.11.2023,2\n", signals), "all 2 rows have the same; times are numbers"),
+        (error("Time,x\n10h00,1\n10h01,2\n", signals), "the first is \"10h00\"; times are numbers"),
     ] {
         assert!(found.contains(part), "\"{part}\" is missing in: {found}");
         assert_eq!(found.lines().count(), 1, "{found}");
     }
+}
+
+/// The columns of a map with these signals, read from a table.
+fn mapped(text: &str, name: &str, map: &str) -> (excavator_model::recording::Recording, Vec<String>) {
+    let file = File::new();
+    let (recording, report) = read_mapped(&file.write(name, text.as_bytes()), &map.parse().unwrap()).unwrap();
+    (recording, report.notes)
+}
+
+const POSITION_AND_PRESSURE: &str = "[[signals]]\nsignal = \"load.displacement\"\ncolumn = \"Position\"\n\
+                                     [[signals]]\nsignal = \"load.cap_pressure\"\ncolumn = \"Pressure A\"\n";
+
+#[test]
+fn headers_of_loggers_are_no_rows() {
+    let labview = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\n***End_of_Header***\t\n\t\nChannels\t2\t\t\t\n\
+                   Samples\t5\t5\t\nDate\t2023/11/20\t2023/11/20\t\nTime\t10:20:00,1\t10:20:00,1\t\nY_Unit_Label\tmm\tbar\t\n\
+                   X0\t0,0E+0\t0,0E+0\t\nDelta_X\t0,002\t0,002\t\n***End_of_Header***\t\t\t\nX_Value\tPosition\tPressure A\tComment\n";
+    let rows: String = (0..5).map(|row| format!("0,00{}\t3{row},5\t1{row},25\n", 2 * row)).collect();
+    let (recording, _) = mapped(&(labview.to_string() + &rows), "bench.lvm", POSITION_AND_PRESSURE);
+    assert_eq!(recording.time, [0.0, 0.002, 0.004, 0.006, 0.008]);
+    assert_eq!((recording.cylinders[0].displacement[1], recording.cylinders[0].cap_pressure[4]), (0.0315, 14.25e5));
+}
+
+#[test]
+fn each_channel_may_have_its_own_times() {
+    let mut text = "Name;Scope;;\nStart;1;Monday;\nName;Position;Name;Pressure A\nSymbolName;MAIN.x;SymbolName;MAIN.p\nUnit;mm;Unit;bar\n\
+                    SampleTime[ms];2;SampleTime[ms];4\n;;;\n"
+        .to_string();
+    for row in 0..10 {
+        let slow = if row < 6 { format!("{};{}", 4 * row - 1, 10 * (4 * row - 1)) } else { ";".to_string() };
+        text += &format!("{};{};{slow}\n", 2 * row, 100 + 2 * row);
+    }
+    let (recording, notes) = mapped(&text, "scope.csv", &format!("[clock]\ncolumn = 1\n{POSITION_AND_PRESSURE}"));
+    assert_eq!((recording.len(), recording.time[9]), (10, 0.018));
+    let load = &recording.cylinders[0];
+    for (sample, (x, p)) in load.displacement.iter().zip(&load.cap_pressure).enumerate() {
+        let t = 2.0 * sample as f64;
+        assert!((x - (0.1 + 1e-3 * t)).abs() < 1e-9 && (p - 1e6 * t).abs() < 1e-3, "{sample}: {x} {p} {notes:?}");
+    }
+}
+
+#[test]
+fn codes_of_loggers_are_not_measured_and_are_listed() {
+    let mut text = "t [s],Position [mm],Pressure A [bar]\n".to_string();
+    for row in 0..100 {
+        let x = if row % 20 == 3 { "-999".to_string() } else { (20.0 + f64::from(row) / 10.0).to_string() };
+        text += &format!("{},{x},{}\n", 0.01 * f64::from(row), if row == 50 { "1e30" } else { "55" });
+    }
+    let (recording, notes) = mapped(&text, "t.csv", POSITION_AND_PRESSURE);
+    let holes = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count();
+    let load = &recording.cylinders[0];
+    assert_eq!([holes(&load.displacement), holes(&load.cap_pressure)], [5, 1]);
+    assert!(
+        notes.iter().any(|note| note.contains("5 of 100 readings are a code") && note.contains("-999 (5 times)")),
+        "{notes:?}"
+    );
+    assert!(notes.iter().any(|note| note.contains("1e30 (1 times)")), "{notes:?}");
+}
+
+#[test]
+fn a_compressed_table_is_a_table() {
+    let file = File::new();
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(b"t [s];x [mm]\n0;1,5\n1;2,5\n2;3,5\n").unwrap();
+    let packed = encoder.finish().unwrap();
+    let path = file.write("table.csv.gz", &packed);
+    assert!(Table::is_table(&path));
+    let table = Table::read(&path, &TableFormat::default()).unwrap();
+    assert_eq!(columns(&table), [column("t", "s", &[0.0, 1.0, 2.0]), column("x", "mm", &[1.5, 2.5, 3.5])]);
+    let cut = Table::read(&file.write("cut.csv.gz", &packed[..packed.len() - 9]), &TableFormat::default());
+    assert!(cut.is_ok_and(|table| table.notes.iter().any(|note| note.contains("cut off"))));
+    assert!(Table::read(&file.write("odd.csv.gz", b"t,x\n0,1\n"), &TableFormat::default()).is_err());
 }
 
 /// One element of a MATLAB 5 file.
@@ -201,6 +275,85 @@ fn matlab_variables_are_columns() {
         let error = Table::read(&file.write("odd.mat", content), &TableFormat::default()).unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
     }
+}
+
+/// A matrix of any class and size with these parts after its name.
+fn array(name: &str, class: u32, size: [i32; 2], parts: &[Vec<u8>]) -> Vec<u8> {
+    let head = [
+        element(6, &[class.to_le_bytes(), [0; 4]].concat()),
+        element(5, &size.map(i32::to_le_bytes).concat()),
+        element(1, name.as_bytes()),
+    ];
+    element(14, &[head.concat(), parts.concat()].concat())
+}
+
+/// A struct array with these fields, element by element.
+fn structs(name: &str, count: i32, fields: &[&str], values: &[Vec<u8>]) -> Vec<u8> {
+    let mut names: Vec<u8> = Vec::new();
+    for field in fields {
+        let mut padded = field.as_bytes().to_vec();
+        padded.resize(16, 0);
+        names.extend(padded);
+    }
+    let head = [element(5, &16_i32.to_le_bytes()), element(1, &names)];
+    array(name, 2, [1, count], &[head.concat(), values.concat()])
+}
+
+#[test]
+fn structs_of_signals_are_columns_with_their_names_and_units() {
+    let text = |text: &str| array("", 4, [1, text.len() as i32], &[element(16, text.as_bytes())]);
+    let numbers = |values: &[f64]| array("", 6, [values.len() as i32, 1], &[doubles(values)]);
+    let signal = |name: &str, unit: &str, values: &[f64]| [text(name), numbers(values), text(unit), numbers(&[4.0])];
+    let y = [signal("Position", "mm", &[1.0, 2.0, 3.0]), signal("Pressure A", "bar", &[4.0, 5.0, 6.0])].concat();
+    let file = mat5(&[structs(
+        "rec",
+        1,
+        &["t", "Y"],
+        &[numbers(&[0.0, 0.1, 0.2]), structs("", 2, &["Name", "Data", "Unit", "Type"], &y)],
+    )]);
+    let expected = [
+        column("rec.t", "", &[0.0, 0.1, 0.2]),
+        column("Position", "mm", &[1.0, 2.0, 3.0]),
+        column("Pressure A", "bar", &[4.0, 5.0, 6.0]),
+    ];
+    assert_eq!(columns(&Table::from_mat(&file).unwrap()), expected);
+}
+
+#[test]
+fn signals_of_several_rates_have_their_own_times() {
+    let numbers = |values: &[f64]| array("", 6, [values.len() as i32, 1], &[doubles(values)]);
+    let slow: Vec<f64> = (0..20).map(f64::from).collect();
+    let fast: Vec<f64> = (0..39).map(|i| 0.5 * f64::from(i)).collect();
+    let tenfold = |times: &[f64]| times.iter().map(|time| 10.0 * time).collect::<Vec<f64>>();
+    let x = [numbers(&slow), numbers(&fast)];
+    let y = [numbers(&tenfold(&slow)), numbers(&[1.0]), numbers(&tenfold(&fast)), numbers(&[2.0])];
+    let file = mat5(&[structs(
+        "rec",
+        1,
+        &["X", "Y"],
+        &[structs("", 2, &["Data"], &x), structs("", 2, &["Data", "XIndex"], &y)],
+    )]);
+    let folder = File::new();
+    let path = folder.write("rates.mat", &file);
+    let map = "[clock]\ncolumn = \"rec.X(1).Data\"\n[[signals]]\nsignal = \"load.displacement\"\ncolumn = \"rec.Y(1).Data\"\n\
+               [[signals]]\nsignal = \"load.cap_pressure\"\ncolumn = \"rec.Y(2).Data\"\n";
+    let (recording, _) = read_mapped(&path, &map.parse().unwrap()).unwrap();
+    assert_eq!((recording.len(), recording.cylinders[0].displacement[7]), (20, 70.0));
+    assert_eq!(recording.cylinders[0].displacement, recording.cylinders[0].cap_pressure);
+}
+
+#[test]
+fn signals_in_rows_are_turned_and_objects_are_refused_with_a_remedy() {
+    let long: Vec<f64> = (0..20).flat_map(|sample| [f64::from(sample), 7.0]).collect();
+    let rows = Table::from_mat(&mat5(&[array("ans", 6, [2, 20], &[doubles(&long)])])).unwrap();
+    assert_eq!((rows.columns.len(), rows.columns[0].values.len()), (2, 20));
+    assert_eq!(rows.columns[1].values, Values::Numbers(vec![7.0; 20]));
+    let object = element(
+        14,
+        &[element(6, &[17_u32.to_le_bytes(), [0; 4]].concat()), element(1, b"ts"), element(1, b"MCOS")].concat(),
+    );
+    let error = Table::from_mat(&mat5(&[object])).unwrap_err();
+    assert!(error.contains("ts: an object of MATLAB") && error.contains("t = ts.Time"), "{error}");
 }
 
 #[test]

@@ -15,7 +15,19 @@ use super::swapped::swapped_chambers;
 const LEAST_MOTION: f64 = 20.0;
 
 /// Largest hydraulic pressure in use, Pa (gauge): mobile machines stay under 50 MPa.
-const HIGHEST_PRESSURE: f64 = 1e8;
+pub(super) const HIGHEST_PRESSURE: f64 = 1e8;
+
+/// Largest force of a cylinder, N.
+pub(super) const LARGEST_FORCE: f64 = 1e8;
+
+/// Largest flow of a pump, m³/s.
+pub(super) const LARGEST_FLOW: f64 = 0.1;
+
+/// Factor over the stroke that no displacement exceeds, whatever the zero of its sensor.
+pub(super) const STROKES: f64 = 2.0;
+
+/// Factor over the full command that no input exceeds.
+pub(super) const FULL_COMMANDS: f64 = 3.0;
 
 /// Least value, Pa, that a pressure in Pa reaches, even if only by its noise. 3 MPa in bar are 30.
 const LEAST_PRESSURE: f64 = 1e3;
@@ -75,12 +87,12 @@ impl Checks<'_> {
     fn cylinder(&mut self, cylinder: &Cylinder, signals: &CylinderSignals) -> Result<(), CheckError> {
         let name = |signal: &str| format!("{}.{signal}", cylinder.name);
         self.motion(cylinder, signals)?;
-        self.at_most(&name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke)?;
+        self.at_most(&name("displacement"), &signals.displacement, "m", STROKES * cylinder.stroke)?;
         self.within_stroke(&name("displacement"), &signals.displacement, cylinder.stroke)?;
         if let Some(chambers) = &cylinder.chambers {
             return self.chambers(signals, chambers);
         }
-        self.at_most(&name("rod_force"), &signals.rod_force, "N", 1e8)?;
+        self.at_most(&name("rod_force"), &signals.rod_force, "N", LARGEST_FORCE)?;
         let time = &self.recording.time;
         if let Some(stretch) = never_changes(time, &signals.rod_force, &signals.displacement, self.time_scale) {
             self.refuse(stretch.error(self.recording, name("rod_force"), "N"))?;
@@ -121,7 +133,7 @@ impl Checks<'_> {
 
     fn chambers(&mut self, signals: &CylinderSignals, chambers: &Chambers) -> Result<(), CheckError> {
         let name = |signal: &str| format!("{}.{signal}", signals.name);
-        let limit = 3.0 * chambers.full_command();
+        let limit = FULL_COMMANDS * chambers.full_command();
         let unit = chambers.drive.command_unit().text();
         self.at_most(&name("orifice_area"), &signals.orifice_area, unit, limit)?;
         self.at_most(&name("orifice_command"), &signals.orifice_command, unit, limit)?;
@@ -183,7 +195,7 @@ impl Checks<'_> {
         if machine.has_chambers() {
             self.pressure("pump_pressure", &recording.pump_pressure, LEAST_WORKING_PRESSURE)?;
             self.at_most("tank_pressure", &recording.tank_pressure, "Pa", HIGHEST_PRESSURE)?;
-            self.at_most("pump_flow", &recording.pump_flow, "m3/s", 0.1)?;
+            self.at_most("pump_flow", &recording.pump_flow, "m3/s", LARGEST_FLOW)?;
         }
         if matches!(machine.supply, Supply::PumpLine(_)) {
             let witnesses: Vec<&[f64]> = recording

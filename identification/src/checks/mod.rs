@@ -3,6 +3,7 @@
 mod check;
 mod clipped;
 mod error;
+mod impossible;
 mod moves_closed;
 mod opening;
 mod remarks;
@@ -13,5 +14,6 @@ mod swapped;
 
 pub use check::check;
 pub use error::{CheckError, OVERRULABLE};
+pub use impossible::remove_impossible;
 pub use remarks::{Remark, remarks};
 pub use shared_readings::{SharedReadings, shared_readings};

@@ -42,11 +42,11 @@ pub enum Remark {
         /// Correlation of opening and command at the best delay.
         correlation: f64,
     },
-    /// Single readings that are impossible for this machine.
+    /// Single readings that are impossible for this machine and were taken as not measured.
     #[error(
-        "{signal}: {count} of {samples} readings are beyond anything possible, up to {worst:.3e} {unit}; leave them out (NaN, or BAG@FROM..TO)"
+        "{signal}: {count} of {samples} readings are beyond anything possible, up to {worst:.3e} {unit}, and were taken as not measured"
     )]
-    Spikes {
+    Impossible {
         /// Contract name of the signal.
         signal: String,
         /// Readings beyond the limit.
@@ -124,9 +124,6 @@ const DELAYS: [f64; 7] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5];
 /// Correlation above which a command counts as followed. A dead band, a slow valve and a stop leave 0.8 and more.
 const FOLLOWS: f64 = 0.5;
 
-/// Largest pressure that a hydraulic sensor can plausibly report, Pa.
-const LARGEST_PRESSURE: f64 = 1e8;
-
 /// Smallest travel, m, that counts as motion; it must also exceed 20 times the noise.
 const LEAST_TRAVEL: f64 = 0.01;
 
@@ -140,7 +137,6 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
             found.push(Remark::MeasuredCommand { cylinder: cylinder.name.clone() });
         }
         let name = |signal: &str| format!("{}.{signal}", cylinder.name);
-        found.extend(spikes(name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke));
         let Some(chambers) = &cylinder.chambers else { continue };
         let (area, command) = (&signals.orifice_area, &signals.orifice_command);
         let (signal, opening) = if is_measured(area) { ("orifice_area", area) } else { ("orifice_command", command) };
@@ -160,8 +156,6 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
         }
         found.extend(moves_while_closed(model, recording, number, opening));
         found.extend(pressed(model, cylinder, &signals.displacement, opening));
-        found.extend(spikes(name("cap_pressure"), &signals.cap_pressure, "Pa", LARGEST_PRESSURE));
-        found.extend(spikes(name("rod_pressure"), &signals.rod_pressure, "Pa", LARGEST_PRESSURE));
     }
     for signals in &recording.cylinders {
         let is_modelled = machine.cylinders.iter().any(|cylinder| cylinder.name == signals.name);
@@ -207,12 +201,6 @@ fn pressed(model: &Model, cylinder: &Cylinder, displacement: &[f64], opening: &[
         end: 1e3 * cylinder.ends[usize::from(is_out)],
         machine: model.machine.name.clone(),
     })
-}
-
-fn spikes(signal: String, values: &[f64], unit: &'static str, limit: f64) -> Option<Remark> {
-    let beyond = || values.iter().copied().filter(|value| value.is_finite() && value.abs() > limit);
-    let worst = beyond().max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-    Some(Remark::Spikes { signal, count: beyond().count(), samples: values.len(), worst, unit })
 }
 
 /// Largest correlation of `follower` with an earlier `leader`, zero if the leader never moves; `None` if the follower rests or

@@ -222,7 +222,8 @@ pub struct InfoArguments {
 
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// Table (.csv, .tsv, .txt, .dat, .xlsx, .mat, .parquet) or bag. Several: one recording in pieces, one after the other.
+    /// Table (.csv, .tsv, .txt, .dat, .lvm, .asc, .xlsx, .mat, .parquet; text also with .gz) or bag. Several: one recording in pieces,
+    /// one after the other.
     #[arg(required = true, value_name = "DATA")]
     pub data: Vec<PathBuf>,
     /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.

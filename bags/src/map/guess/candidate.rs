@@ -10,8 +10,15 @@ use super::super::unit::{Dimension, Unit};
 /// Source of the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Origin {
-    Column(String),
-    Field { topic: String, field: FieldPath },
+    /// By its heading, and by its number from 1 where another column has the same.
+    Column {
+        name: String,
+        number: Option<usize>,
+    },
+    Field {
+        topic: String,
+        field: FieldPath,
+    },
 }
 
 /// A column or field with its values.
@@ -27,6 +34,8 @@ pub(super) struct Candidate {
     /// s.
     pub time: Vec<f64>,
     pub values: Vec<f64>,
+    /// Share of the cells or messages that have a value.
+    pub filled: f64,
 }
 
 /// The candidates found in data.
@@ -42,7 +51,8 @@ impl Candidate {
     /// Its name for display.
     pub fn label(&self) -> String {
         match &self.origin {
-            Origin::Column(name) => name.clone(),
+            Origin::Column { name, number: None } => name.clone(),
+            Origin::Column { name, number: Some(number) } => format!("{name} (column {number})"),
             Origin::Field { topic, field } => format!("{topic} {field}"),
         }
     }
@@ -51,7 +61,9 @@ impl Candidate {
     pub fn source(&self, signal: SignalName, unit: Option<&str>) -> SignalSource {
         let mut source = SignalSource::new(signal);
         match &self.origin {
-            Origin::Column(name) => source.column = Some(ColumnName::Name(name.clone())),
+            Origin::Column { name, number } => {
+                source.column = Some(number.map_or_else(|| ColumnName::Name(name.clone()), ColumnName::Number));
+            }
             Origin::Field { topic, field } => {
                 source.topic = Some(topic.clone());
                 source.field = Some(field.clone());

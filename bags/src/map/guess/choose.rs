@@ -1,6 +1,7 @@
 //! Assigns candidates to signals.
 
 use std::collections::{BTreeSet, HashSet};
+use std::f64::consts::{PI, TAU};
 
 use excavator_model::display::pressure_text;
 use excavator_model::recording::has_noise;
@@ -14,6 +15,9 @@ use super::names;
 use super::shapes::{Shape, derivative, rest, short};
 use super::{Confidence, GuessedSignal, Hints, Possibility, SheetColumn, ZeroAt};
 use crate::table::heading_of;
+
+/// A column with a smaller share of values is hardly measured.
+const LEAST_FILLED: f64 = 0.05;
 
 /// Below this score, a name alone is not sufficient.
 const LEAST_SCORE: f64 = 0.5;
@@ -69,12 +73,19 @@ pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<Guess
             // The assignment may be certain, but the unit is not.
             _ => confidence.min(Confidence::Likely),
         };
+        let candidate = &candidates[pair.candidate];
+        let (confidence, remark) = if candidate.filled < LEAST_FILLED {
+            (Confidence::Unsure, format!("{remark}; {:.1} % of its cells are empty", 100.0 * (1.0 - candidate.filled)))
+        } else {
+            (confidence, remark)
+        };
         used.insert(pair.candidate);
         taken.insert(name.clone());
-        let Possibility { source, label, reason, unit_reason } =
-            possibility(&candidates[pair.candidate], shapes[pair.candidate], name, &pair.reason, hints);
+        let Possibility { source, label, reason, unit_reason, needs_scale } =
+            possibility(candidate, shapes[pair.candidate], name, &pair.reason, hints);
         let reason = reason + &remark;
-        let guessed = GuessedSignal { source, label, reason, unit_reason, confidence, alternatives: Vec::new() };
+        let guessed =
+            GuessedSignal { source, label, reason, unit_reason, needs_scale, confidence, alternatives: Vec::new() };
         signals.push((place, guessed));
     }
     let sure: HashSet<usize> = signals
@@ -100,7 +111,7 @@ pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<Guess
 
 /// What the owner says of this column; its heading may be given with or without the unit.
 fn described<'h>(candidate: &Candidate, hints: Hints<'h>) -> Option<&'h SheetColumn> {
-    let Origin::Column(name) = &candidate.origin else { return None };
+    let Origin::Column { name, .. } = &candidate.origin else { return None };
     hints
         .columns
         .iter()
@@ -117,8 +128,9 @@ fn from_sheet(
     hints: Hints<'_>,
 ) -> GuessedSignal {
     let stroke = hints.stroke(name.cylinder.as_ref());
-    let Possibility { mut source, label, reason, unit_reason } =
+    let Possibility { mut source, label, reason, unit_reason, needs_scale } =
         possibility(candidate, shape, name, "the data sheet says so", hints);
+    let needs_scale = needs_scale && column.scale.is_none();
     source.scale = column.scale.clone().or(source.scale);
     source.sign = column.sign;
     if let Some(zero) = column.zero {
@@ -133,7 +145,7 @@ fn from_sheet(
         }
     }
     let confidence = Confidence::Chosen;
-    GuessedSignal { source, label, reason, unit_reason, confidence, alternatives: Vec::new() }
+    GuessedSignal { source, label, reason, unit_reason, needs_scale, confidence, alternatives: Vec::new() }
 }
 
 /// A candidate as a signal: its map entry, and the reasons.
@@ -155,14 +167,15 @@ fn possibility(
     let of_drive = hints.input(name.cylinder.as_ref()).filter(|_| is_input);
     let takes = |found: Dimension| of_drive.map_or(kind.takes(found), |wanted| found == wanted);
     let wanted = of_drive.unwrap_or(kind.dimension());
-    let (unit, mut unit_reason) = unit(candidate, shape, wanted);
+    let (unit, mut unit_reason) = unit(candidate, shape, wanted, of_drive.is_some());
     if let Some((own, who)) = &candidate.unit
         && takes(own.dimension)
     {
         unit_reason.clone_from(who);
     }
     let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
-    if let Some(unit) = unit.as_ref().filter(|unit| !takes(unit.dimension)) {
+    let needs_scale = unit.as_ref().is_some_and(|unit| !takes(unit.dimension));
+    if let Some(unit) = unit.as_ref().filter(|_| needs_scale) {
         // The map needs a scale here, which only the sensor's data sheet provides.
         let text = format!("1 {}/{}", wanted.si_unit(), unit.name);
         source.scale = Some(Quantity::Text(text));
@@ -187,7 +200,7 @@ fn possibility(
             100.0 * share
         );
     }
-    Possibility { source, label: candidate.label(), reason, unit_reason }
+    Possibility { source, label: candidate.label(), reason, unit_reason, needs_scale }
 }
 
 fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>], hints: Hints<'_>) -> Vec<Pair> {
@@ -204,8 +217,9 @@ fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>], hints: Hints<'_>) -
             }
         }
     }
-    add_derivatives(candidates, &mut pairs);
+    add_derivatives(candidates, &mut pairs, hints.has_motor());
     add_places_of_pressures(candidates, shapes, &mut pairs);
+    add_only_input(candidates, shapes, &mut pairs, hints);
     add_followers(candidates, &mut pairs);
     pairs
 }
@@ -244,8 +258,9 @@ fn by_name_and_unit(kind: SignalKind, candidate: &Candidate, hints: Hints<'_>) -
     }
 }
 
-/// A position and the velocity that is its derivative confirm each other.
-fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair]) {
+/// A position and the velocity that is its derivative confirm each other. A ratio that no units have is evidence against: the input of
+/// a valve goes with the speed as well.
+fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair], may_rotate: bool) {
     let of_kind =
         |pairs: &[Pair], kind| -> Vec<usize> { (0..pairs.len()).filter(|&index| pairs[index].kind == kind).collect() };
     for position in of_kind(pairs, SignalKind::Displacement) {
@@ -255,15 +270,81 @@ fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair]) {
                 continue;
             }
             let Some((correlation, ratio)) = derivative((&x.time, &x.values), (&v.time, &v.values)) else { continue };
-            if correlation.abs() >= LEAST_CORRELATION {
-                let sign = if correlation < 0.0 { ", with the sign turned" } else { "" };
-                let told = format!("correlation {correlation:.2}, {} per 1{sign}", short(ratio.abs()));
+            if correlation.abs() < LEAST_CORRELATION {
+                continue;
+            }
+            let sign = if correlation < 0.0 { ", with the sign turned" } else { "" };
+            let told = format!("correlation {correlation:.2}, {} per 1{sign}", short(ratio.abs()));
+            if is_ratio_of_units([x, v], ratio.abs(), correlation.abs(), may_rotate) {
                 pairs[position].score += 0.5;
                 pairs[position].reason += &format!("; its derivative is {} ({told})", v.label());
                 pairs[velocity].score += 0.5;
                 pairs[velocity].reason += &format!("; derivative of {} ({told})", x.label());
+            } else {
+                pairs[velocity].score -= 0.5;
+                pairs[velocity].reason +=
+                    &format!("; goes with the derivative of {}, but no units have this ratio ({told})", x.label());
             }
         }
+    }
+}
+
+/// Ratios of a position in one unit to a velocity in another: mm, cm, m, in; per s, per min. With angles also degrees, radians and
+/// turns.
+const LINEAR_RATIOS: [f64; 12] =
+    [1.0, 10.0, 100.0, 1000.0, 0.1, 0.01, 1e-3, 25.4, 1.0 / 25.4, 1.0 / 60.0, 1000.0 / 60.0, 1.0 / 3.6];
+const ANGULAR_RATIOS: [f64; 6] = [180.0 / PI, PI / 180.0, PI / 30.0, 6.0, TAU, 1.0 / TAU];
+/// Relative difference within which a measured ratio is one of these: velocities are filtered and noisy.
+const RATIO_TOLERANCE: f64 = 0.12;
+
+/// Whether the derivative of a position is a velocity by its size.
+fn is_ratio_of_units([x, v]: [&Candidate; 2], ratio: f64, correlation: f64, may_rotate: bool) -> bool {
+    // The slope is between the ratio and this much larger one, for noise in the velocity.
+    let is_near = |wanted: f64| {
+        wanted * (1.0 - RATIO_TOLERANCE) <= ratio / correlation && ratio <= wanted * (1.0 + RATIO_TOLERANCE)
+    };
+    match (&x.unit, &v.unit) {
+        (Some((x, _)), Some((v, _))) => match (x.dimension, v.dimension) {
+            (Dimension::Length, Dimension::Velocity) | (Dimension::Angle, Dimension::RotationalSpeed) => {
+                is_near(v.factor() / x.factor())
+            }
+            // A transducer in volts may have any scale.
+            _ => true,
+        },
+        _ => {
+            let is_raw = |candidate: &Candidate| {
+                matches!(candidate.dimension, Some(Dimension::Voltage | Dimension::Current | Dimension::Number))
+            };
+            let angular = ANGULAR_RATIOS.into_iter().filter(|_| may_rotate);
+            is_raw(x) || LINEAR_RATIOS.into_iter().chain(angular).any(is_near)
+        }
+    }
+}
+
+/// Score of the only column that can be the input: enough, and less than any name.
+const ONLY_INPUT_SCORE: f64 = 0.6;
+
+/// Where no name says which column is the input of the model, the only voltage (or current) is that, if the model takes one.
+fn add_only_input(candidates: &[Candidate], shapes: &[Option<Shape>], pairs: &mut Vec<Pair>, hints: Hints<'_>) {
+    let is_input = |kind| matches!(kind, SignalKind::OrificeCommand | SignalKind::OrificeArea);
+    let wanted = hints.input(Some(&hints.cylinder.to_string()));
+    let Some(wanted) = wanted.filter(|wanted| matches!(wanted, Dimension::Voltage | Dimension::Current)) else {
+        return;
+    };
+    if pairs.iter().any(|pair| is_input(pair.kind) && pair.score >= LEAST_SCORE) {
+        return;
+    }
+    let has_place = |index: usize| pairs.iter().any(|pair| pair.candidate == index && pair.score >= LEAST_SCORE);
+    let of = |index: usize| {
+        candidates[index].unit.as_ref().map(|(unit, _)| *unit).or(raw_unit(&candidates[index], shapes[index]))
+    };
+    let mut possible = (0..candidates.len())
+        .filter(|&index| !has_place(index) && of(index).is_some_and(|unit| unit.dimension == wanted))
+        .filter(|&index| shapes[index].is_some_and(|shape| !shape.is_constant()));
+    if let (Some(candidate), None) = (possible.next(), possible.next()) {
+        let reason = format!("the only {wanted}, and the model takes one as its input");
+        let kind = SignalKind::OrificeCommand;
+        pairs.push(Pair { candidate, kind, score: ONLY_INPUT_SCORE, reason, is_weak: false });
     }
 }
 
@@ -350,12 +431,18 @@ fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], p
 }
 
 fn si_mean(candidate: &Candidate, shape: Shape) -> f64 {
-    let (unit, _) = unit(candidate, Some(shape), Dimension::Pressure);
+    let (unit, _) = unit(candidate, Some(shape), Dimension::Pressure, false);
     unit.unwrap_or(Unit::si(Dimension::Pressure)).to_si(shape.mean)
 }
 
-/// The unit of a candidate as a signal of this dimension, `None` for SI, and the reason.
-fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (Option<Unit>, String) {
+/// The unit of a candidate as a signal of this dimension, `None` for SI, and the reason. `is_of_model` says that the model states the
+/// dimension.
+fn unit(
+    candidate: &Candidate,
+    shape: Option<Shape>,
+    dimension: Dimension,
+    is_of_model: bool,
+) -> (Option<Unit>, String) {
     if let Some((unit, who)) = &candidate.unit {
         let why = match unit.dimension == dimension {
             true => who.clone(),
@@ -378,6 +465,7 @@ fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (O
     }
     match shape.and_then(|shape| shape.unit(dimension)) {
         Some((name, why)) => (Unit::named(name), why),
+        None if is_of_model => (Some(Unit::si(dimension)), "no unit given; the model takes this".to_string()),
         None => (Some(Unit::si(dimension)), "no unit given, and the numbers fit SI".to_string()),
     }
 }

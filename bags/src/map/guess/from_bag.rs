@@ -118,6 +118,7 @@ fn of_topic(topic: &Topic, seen: Seen) -> Vec<Candidate> {
                 dimension,
                 time: seen.time.clone(),
                 values,
+                filled: 1.0,
             }
         })
         .collect()

@@ -1,6 +1,8 @@
 //! Finds the candidates in a table.
 
 use super::super::clock_source::{ClockSource, ColumnName};
+use super::super::day_serial;
+use super::super::sparse::sparse_columns;
 use super::super::table_clock::time_column;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Found, Origin, words};
@@ -19,7 +21,8 @@ pub(super) fn candidates(table: &Table) -> Found {
             let clock = |rate: f64| ClockSource { rate: Some(rate), ..ClockSource::default() };
             let clock = match &table.sampling {
                 Some(Sampling { rate, line }) => (clock(*rate), format!("the line \"{line}\" says so")),
-                None => (clock(GUESSED_RATE), "no time found: put the true rate in Hz".into()),
+                // The next verb asks for it.
+                None => (ClockSource::default(), NO_TIME.into()),
             };
             (clock, Vec::new())
         }
@@ -50,28 +53,48 @@ fn found_with(candidates: Vec<Candidate>, clock: (ClockSource, String)) -> Found
     Found { candidates, clock, unreadable: Vec::new() }
 }
 
-/// Assumed rate of a table without any information, Hz: a placeholder.
-const GUESSED_RATE: f64 = 100.0;
+/// The reason for a clock that nobody can guess.
+pub(super) const NO_TIME: &str = "no time found: put the true rate in Hz";
 
 fn columns(table: &Table, clock: &str, rows: usize, time: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
-    for column in table.columns.iter().filter(|column| column.name != clock) {
+    let sparse = sparse_columns(table);
+    let clock_place = table.columns.iter().position(|column| column.name == clock);
+    for (place, column) in table.columns.iter().enumerate() {
         let Values::Numbers(values) = &column.values else { continue };
+        let is_times = table.columns.iter().any(|other| other.times == Some(place));
         let fits = if rows == 0 { values.len() > 1 } else { values.len() == rows };
-        if fits {
-            let unit =
-                column.unit.as_deref().and_then(Unit::named).map(|unit| (unit, "the heading says so".to_string()));
-            candidates.push(Candidate {
-                words: words(&column.name),
-                origin: Origin::Column(column.name.clone()),
-                dimension: unit.as_ref().map(|(unit, _)| unit.dimension),
-                unit,
-                time: if rows == 0 { (0..values.len()).map(|row| row as f64 / 100.0).collect() } else { time.to_vec() },
-                values: values.clone(),
-            });
+        if Some(place) == clock_place || is_times || !fits {
+            continue;
         }
+        let unit = column.unit.as_deref().and_then(Unit::named).map(|unit| (unit, "the heading says so".to_string()));
+        let has_twin = table.columns.iter().filter(|other| other.name == column.name).count() > 1;
+        let number = if has_twin { Some(place + 1) } else { None };
+        let filled = values.iter().filter(|value| value.is_finite()).count() as f64 / values.len().max(1) as f64;
+        let time = if rows == 0 { (0..values.len()).map(|row| row as f64 / 100.0).collect() } else { time.to_vec() };
+        // The empty cells of a merged table are no samples.
+        let (time, values) = match sparse.get(place) {
+            Some(true) => time.iter().zip(values).filter(|(_, value)| value.is_finite()).unzip(),
+            _ => (time, values.clone()),
+        };
+        candidates.push(Candidate {
+            words: words(without_unit(&column.name, column.unit.as_deref())),
+            origin: Origin::Column { name: column.name.clone(), number },
+            dimension: unit.as_ref().map(|(unit, _)| unit.dimension),
+            unit,
+            time,
+            values,
+            filled,
+        });
     }
     candidates
+}
+
+/// A heading without the unit at its end: the V of `u_V` is no velocity.
+fn without_unit<'n>(name: &'n str, unit: Option<&str>) -> &'n str {
+    let parts =
+        name.rsplit_once('_').filter(|(_, ending)| Unit::named(ending).is_some_and(|found| Some(found.name) == unit));
+    parts.map_or(name, |(stem, _)| stem)
 }
 
 fn grows(values: &Values) -> bool {
@@ -83,6 +106,9 @@ fn grows(values: &Values) -> bool {
 
 /// Unit of a time column and the reason for it.
 fn time_unit(heading: Option<&str>, numbers: &[f64]) -> (&'static str, &'static str) {
+    if heading.is_none() && day_serial::are_days(numbers) {
+        return ("d", "days of a spreadsheet or of MATLAB, by their range and their steps");
+    }
     let named = heading.and_then(Unit::named).filter(|unit| unit.dimension == Dimension::Time);
     if let Some(unit) = named {
         return (unit.name, "its unit is in the heading");

@@ -19,6 +19,7 @@ use self::candidate::Found;
 pub use self::sheet_column::{SheetColumn, ZeroAt};
 use super::clock_source::ClockSource;
 use super::document::TopicMap;
+use super::fault_code;
 use super::signal_source::SignalSource;
 use super::unit::{Dimension, Unit};
 use crate::BagError;
@@ -91,6 +92,11 @@ impl Hints<'_> {
         self.machine.is_none_or(|machine| machine.cylinders.iter().any(|cylinder| cylinder.name == name))
     }
 
+    /// Whether one of its drives rotates.
+    fn has_motor(&self) -> bool {
+        self.machine.is_some_and(|machine| machine.cylinders.iter().any(Cylinder::is_motor))
+    }
+
     /// Whether a pump of its own drives a cylinder: its speed is the input.
     fn has_pump_drive(&self) -> bool {
         let drives = self.machine.into_iter().flat_map(|machine| &machine.cylinders).filter_map(|one| one.chambers);
@@ -110,6 +116,8 @@ pub struct Possibility {
     pub reason: String,
     /// Reason for the unit.
     pub unit_reason: String,
+    /// Whether the scale of its entry is a placeholder: nothing in the data says what the sensor or the valve makes of its unit.
+    pub needs_scale: bool,
 }
 
 /// One guessed signal and the reasons for it.
@@ -124,6 +132,8 @@ pub struct GuessedSignal {
     pub reason: String,
     /// Reason for the unit.
     pub unit_reason: String,
+    /// Whether the scale of its entry is a placeholder.
+    pub needs_scale: bool,
     /// Confidence in the assignment.
     pub confidence: Confidence,
     /// Other possible sources, if it is not sure.
@@ -145,13 +155,13 @@ pub struct Guess {
 }
 
 impl Guess {
-    /// The guess as a map, without unsure signals.
+    /// The guess as a map, without unsure signals and without scales that are placeholders: who reads with it is asked for them.
     pub fn map(&self) -> TopicMap {
         let taken = self.signals.iter().filter(|guessed| guessed.confidence > Confidence::Unsure);
         TopicMap {
             description: format!("guessed from {}: check every line", self.data),
             clock: self.clock.0.clone(),
-            signals: taken.map(|guessed| guessed.source.clone()).collect(),
+            signals: taken.map(GuessedSignal::without_placeholder).collect(),
             ..TopicMap::default()
         }
     }
@@ -185,10 +195,18 @@ impl Guess {
 }
 
 impl GuessedSignal {
+    /// Its map entry without a scale that is a placeholder.
+    fn without_placeholder(&self) -> SignalSource {
+        let mut source = self.source.clone();
+        source.scale = source.scale.filter(|_| !self.needs_scale);
+        source
+    }
+
     /// Makes an alternative the guess.
     fn take(&mut self, number: usize) {
-        let Possibility { source, label, reason, unit_reason } = self.alternatives.remove(number);
+        let Possibility { source, label, reason, unit_reason, needs_scale } = self.alternatives.remove(number);
         (self.source, self.label, self.reason, self.unit_reason) = (source, label, reason, unit_reason);
+        self.needs_scale = needs_scale;
     }
 }
 
@@ -209,11 +227,15 @@ impl GuessedSignal {
 /// # Errors
 /// If the data cannot be read: the errors of [`RawMessages::open`](rosbag2::RawMessages::open), [`BagError::BadTable`].
 pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagError> {
-    let Found { candidates, clock, unreadable } = if Table::is_table(path) {
+    let Found { mut candidates, clock, unreadable } = if Table::is_table(path) {
         from_table::candidates(&Table::read(path, &TableFormat::default())?)
     } else {
         from_bag::candidates(path)?
     };
+    for candidate in &mut candidates {
+        // A code of -999 is no extreme of a position.
+        fault_code::remove_from(&mut candidate.values);
+    }
     let (signals, mut left) = choose::choose(candidates, hints.into());
     left.extend(unreadable);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })

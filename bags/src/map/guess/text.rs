@@ -26,7 +26,11 @@ impl Guess {
             push_comment(&mut text, &comment);
         }
         text.push_str("\n[clock]\n");
-        for line in toml_lines(&self.clock.0)? {
+        let clock = toml_lines(&self.clock.0)?;
+        if clock.is_empty() {
+            push_line(&mut text, "# ", "rate = 500.0", &self.clock.1);
+        }
+        for line in clock {
             push_line(&mut text, "", &line, &self.clock.1);
         }
         for guessed in &self.signals {
@@ -61,6 +65,8 @@ fn push_signal(text: &mut String, guessed: &GuessedSignal) -> Result<(), MapErro
             "unit" => guessed.unit_reason.as_str(),
             _ => "",
         };
+        // A placeholder in force would be taken for the true scale; without it the next verb asks.
+        let mark = if guessed.needs_scale && line.starts_with("scale = ") { "# " } else { mark };
         push_line(text, mark, &line, reason);
     }
     for alternative in &guessed.alternatives {

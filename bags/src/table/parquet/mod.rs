@@ -86,7 +86,7 @@ fn read(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFault> {
                 .push(format!("column {name}: {count} times are outside 1677 to 2262 and were taken as not measured"));
         }
         let unit = column.unit.or_else(|| column.kind.unit().map(str::to_string));
-        table.columns.push(Column { name: column.name, unit, values: cells.values });
+        table.columns.push(Column { name: column.name, unit, values: cells.values, times: None });
     }
     Ok(table)
 }
