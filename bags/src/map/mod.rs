@@ -50,6 +50,7 @@ mod read_table;
 mod resample;
 mod signal;
 mod signal_source;
+mod spike_line;
 mod table_clock;
 mod track;
 mod unit;
@@ -72,6 +73,7 @@ pub use quantity::Quantity;
 pub use read_mapped::{Origin, read_mapped, read_recording_or_mapped, read_signals};
 pub use signal::{SignalKind, SignalName};
 pub use signal_source::{Resampling, SignalSource};
+pub use spike_line::spike_line;
 pub use unit::{Dimension, Unit};
 
 /// Whether a key of a map file can be left out.
