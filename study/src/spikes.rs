@@ -1,6 +1,6 @@
 //! Leaves single values out that no machine can reach between two samples.
 
-use excavator_bags::map::SignalName;
+use excavator_bags::map::{SignalName, spike_line};
 use excavator_model::recording::{Recording, spikes};
 
 /// Neighbours of a value are at most this many median intervals away.
@@ -34,11 +34,7 @@ pub(crate) fn leave_out_spikes(recording: &mut Recording) -> Vec<String> {
         for &index in &indices {
             values[index] = between(&time, values, index);
         }
-        lines.push(format!(
-            "{name}: {} single values jump away from their neighbours and back, the first at {first:.3} s to {worst:.4e} {}; they are left out",
-            indices.len(),
-            name.kind.dimension().si_unit()
-        ));
+        lines.push(spike_line(&name, indices.len(), first, worst));
     }
     lines
 }
@@ -67,7 +63,10 @@ mod tests {
         recording.cylinders[0].orifice_command[100] = 1e-4;
         let lines = leave_out_spikes(&mut recording);
         assert_eq!(lines.len(), 1, "{lines:?}");
-        assert!(lines[0].starts_with("arm.displacement: 1 single values") && lines[0].contains("0.200 s"), "{lines:?}");
+        assert!(
+            lines[0].starts_with("arm.displacement: one value jumps away") && lines[0].contains("0.200 s"),
+            "{lines:?}"
+        );
         assert!((recording.cylinders[0].displacement[100] - 0.02).abs() < 1e-12);
         assert_eq!(recording.cylinders[0].orifice_command[100], 1e-4);
         assert!(leave_out_spikes(&mut recording).is_empty());

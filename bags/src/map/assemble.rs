@@ -11,6 +11,7 @@ use super::fault_code;
 use super::one_clock::stretch_text;
 use super::resample::{Policy, resample};
 use super::signal_source::SignalSource;
+use super::spike_line::spike_line;
 use super::track::Track;
 use super::wanted::{Computed, Wanted};
 use crate::reading::{MappedUnit, ReadReport, count_late, gaps, steps_back};
@@ -190,13 +191,8 @@ fn leave_out_spikes(source: &SignalSource, track: &mut Track, clock: &[i64], rep
     let found = track.leave_out_spikes(longest * 1e9);
     let Some(&(first, value)) = found.first() else { return };
     let start = clock.first().copied().unwrap_or_default();
-    report.notes.push(format!(
-        "{}: {} single values jump away from their neighbours and back, the first at {:.3} s to {value:.4e} {}; they are left out",
-        source.signal,
-        found.len(),
-        first.saturating_sub(start) as f64 / 1e9,
-        source.signal.kind.dimension().si_unit()
-    ));
+    let at = first.saturating_sub(start) as f64 / 1e9;
+    report.notes.push(spike_line(&source.signal, found.len(), at, value));
 }
 
 fn mapped_unit(source: &SignalSource, conversion: &Conversion) -> Option<MappedUnit> {

@@ -53,6 +53,7 @@ mod resample;
 mod signal;
 mod signal_source;
 mod sparse;
+mod spike_line;
 mod table_clock;
 mod track;
 mod unit;
@@ -76,6 +77,7 @@ pub use quantity::Quantity;
 pub use read_mapped::{Origin, read_mapped, read_recording_or_mapped, read_signals};
 pub use signal::{SignalKind, SignalName};
 pub use signal_source::{Resampling, SignalSource};
+pub use spike_line::spike_line;
 pub use unit::{Dimension, Unit};
 
 /// Whether a key of a map file can be left out.

@@ -81,9 +81,17 @@ fn a_command_that_is_not_followed_is_told() {
 #[test]
 fn readings_beyond_anything_possible_are_told() {
     is_told(
-        |recording| recording.cylinders[0].cap_pressure[700] = 4.2e9,
-        &["arm.cap_pressure: 1 of 2500 readings are beyond anything possible", "4.200e9 Pa"],
+        |recording| recording.cylinders[0].cap_pressure[700..705].fill(4.2e9),
+        &["arm.cap_pressure: 5 of 2500 readings are beyond anything possible", "4.200e9 Pa"],
     );
+}
+
+#[test]
+fn a_single_reading_far_from_its_neighbours_is_left_out_and_told() {
+    let told = complaint(&compared(|recording| recording.cylinders[0].cap_pressure[700] = 4.2e9));
+    let line = "arm.cap_pressure: one value jumps away from its neighbours and back, at 1.400 s to 4.2000e9 Pa; it is left out";
+    assert!(told.contains(line), "{told}");
+    assert!(!told.contains("beyond anything possible"), "{told}");
 }
 
 #[test]
