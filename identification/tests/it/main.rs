@@ -7,6 +7,7 @@ mod contact_and_another;
 mod effects_in_pictures;
 mod full;
 mod named_additions;
+mod printed_least_squares;
 mod profile_likelihood;
 mod rounded_corners;
 mod several_effects;
