@@ -5,6 +5,7 @@
 mod common;
 mod contact_and_another;
 mod effects_in_pictures;
+mod energies_of_effects;
 mod full;
 mod named_additions;
 mod printed_least_squares;
