@@ -208,9 +208,10 @@ impl<'m> Analyser<'m> {
         }
         let end = self.buffer.time.partition_point(|&t| t <= self.settings.head);
         let head = slice(&self.buffer, 0..end.max(1));
-        // Two entries per half width preserve everything that parabolas of that width pass.
+        // Five entries per half width. Parabolas of that width pass less, but a chamber that boils starts within a few milliseconds,
+        // and so does the power of its vapour.
         let per_half_width = self.settings.half_width / head.sample_interval();
-        self.stride = (per_half_width / 2.5 + 1e-6).floor().max(1.0) as usize;
+        self.stride = (per_half_width / 5.0 + 1e-6).floor().max(1.0) as usize;
         let (period, frequency) = excitation(self.model, &head);
         self.frequency = frequency;
         self.cycles = period.map(|period| Cycles::new(self.model, period));

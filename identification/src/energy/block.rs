@@ -4,10 +4,10 @@ use excavator_model::SignalError;
 use excavator_model::energy::Accountant;
 use excavator_model::equations::{Inputs, KnownCylinder, LawStates, System};
 use excavator_model::machine::Supply;
-use excavator_model::recording::{Recording, is_measured};
+use excavator_model::recording::{Recording, is_measured, noise_level};
 use excavator_model::simulation::{InputSignals, undistorted};
 
-use super::smoothing::Parabola;
+use super::smoothing::{Parabola, Parabolas};
 use super::{Books, EnergySettings};
 
 /// A stretch without gaps. Its entries are the samples whose number in the recording is a multiple of `stride`, so that
@@ -40,7 +40,7 @@ impl Block {
 }
 
 /// The measured states and inputs of a block at its entries. Positions and pressures come from parabolas through their samples,
-/// valves from the estimate that also drives simulations. Entries are skipped if their windows are cut off by the ends or contain
+/// narrower ones where a pressure has a corner: a chamber that starts to boil, a valve that closes. Valves come from the estimate that also drives simulations. Entries are skipped if their windows are cut off by the ends or contain
 /// an unmeasured sample.
 pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySettings) -> Result<Entries, SignalError> {
     let model = system.model();
@@ -63,12 +63,14 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
             } else {
                 signals.joint_angle.iter().map(|&joint| cylinder.linkage.displacement(joint)).collect()
             };
-            Ok((displacement, signals))
+            let noise = [&signals.cap_pressure, &signals.rod_pressure].map(|signal| noise_level(signal));
+            Ok((displacement, signals, noise))
         })
         .collect::<Result<Vec<_>, SignalError>>()?;
     let mut entries = Entries::new(system, signals);
     let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
-    let (mut motion, mut pressure) = (Parabola::default(), Parabola::default());
+    let pump_noise = noise_level(&recording.pump_pressure);
+    let (mut motion, mut pressure) = (Parabola::default(), Parabolas::default());
     for sample in block.entries() {
         if !motion.set(&recording.time, sample, settings.motion_half_width)
             || !pressure.set(&recording.time, sample, settings.half_width)
@@ -77,18 +79,21 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
         }
         entries.signals.between(sample, 0.0, &mut inputs);
         let known = |number: usize| {
-            let (displacement, measured) = &sources[number];
+            let (displacement, measured, [cap_noise, rod_noise]) = &sources[number];
             let velocity = match measured.velocity[sample] {
-                known if known.is_finite() => pressure.value(&measured.velocity),
+                known if known.is_finite() => pressure.widest(&measured.velocity),
                 _ => motion.slope(displacement),
             };
             KnownCylinder {
                 joint: model.machine.cylinders[number].linkage.joint(motion.value(displacement)),
                 velocity,
-                pressures: [&measured.cap_pressure, &measured.rod_pressure].map(|signal| pressure.value(signal)),
+                pressures: [
+                    pressure.value(&measured.cap_pressure, *cap_noise),
+                    pressure.value(&measured.rod_pressure, *rod_noise),
+                ],
             }
         };
-        let pump_pressure = pressure.value(&recording.pump_pressure);
+        let pump_pressure = pressure.value(&recording.pump_pressure, pump_noise);
         system.set_measured(known, pump_pressure, &mut state);
         // If it is not measured, the machine's constant is already set.
         if matches!(model.machine.supply, Supply::PressureSource(_)) && pump_pressure.is_finite() {

@@ -10,6 +10,8 @@ pub(crate) struct Parabola {
     places: Vec<f64>,
     value: Vec<f64>,
     slope: Vec<f64>,
+    /// Coefficient of the square of a place.
+    bend: Vec<f64>,
 }
 
 /// Fewest samples: three coefficients, one more to average.
@@ -19,6 +21,52 @@ const ROUNDING: f64 = 1e-7;
 /// Weights are reused if no sample is further than this from its previous place, as a share of the half width: on an even clock
 /// places differ by rounding only.
 const SAME_PLACE: f64 = 1e-9;
+
+/// Largest mean squared misfit, in variances of the noise, of a parabola that follows a signal. Noise alone exceeds it once in a
+/// thousand windows of eleven samples.
+const LARGEST_MISFIT: f64 = 3.3;
+
+/// Parabolas of several widths, for signals with corners.
+#[derive(Debug, Default)]
+pub(super) struct Parabolas {
+    /// From the widest to the narrowest; those with too few samples are absent.
+    widths: Vec<Parabola>,
+    centre: usize,
+}
+
+/// Widths relative to the widest one.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
+
+impl Parabolas {
+    /// Sets the parabolas at sample `centre`. Returns `false` if the widest one cannot be.
+    pub fn set(&mut self, time: &[f64], centre: usize, half_width: f64) -> bool {
+        self.centre = centre;
+        self.widths.resize_with(SHARES.len(), Parabola::default);
+        let mut known = self.widths.iter_mut().zip(SHARES);
+        let widest = known.next().is_some_and(|(parabola, share)| parabola.set(time, centre, share * half_width));
+        known.for_each(|(parabola, share)| {
+            parabola.set(time, centre, share * half_width);
+        });
+        widest
+    }
+
+    /// Value of a signal by the widest parabola.
+    pub fn widest(&self, signal: &[f64]) -> f64 {
+        self.widths.first().map_or(f64::NAN, |parabola| parabola.value(signal))
+    }
+
+    /// Value of a signal with this noise, by the widest parabola that follows it; the sample itself where none does. `NaN` if a
+    /// sample of the widest window is.
+    pub fn value(&self, signal: &[f64], noise: f64) -> f64 {
+        if self.widest(signal).is_nan() {
+            return f64::NAN;
+        }
+        let mut usable = self.widths.iter().filter(|parabola| !parabola.value.is_empty());
+        usable
+            .find(|parabola| parabola.follows(signal, noise))
+            .map_or(signal[self.centre], |parabola| parabola.value(signal))
+    }
+}
 
 impl Parabola {
     /// Sets the parabola at sample `centre` through the samples within `half_width` of it. Returns `false`, without weights, if
@@ -51,6 +99,7 @@ impl Parabola {
     fn weigh(&mut self) {
         self.value.clear();
         self.slope.clear();
+        self.bend.clear();
         let mut s = [0.0_f64; 5];
         for x in &self.places {
             let square = x * x;
@@ -68,6 +117,7 @@ impl Parabola {
             s[0] * s[4] - s[2] * s[2],
         ];
         let corner = s[1] * s[2] - s[0] * s[3];
+        let last = s[0] * s[2] - s[1] * s[1];
         let determinant = s[0] * cofactors[0] + s[1] * cofactors[1] + s[2] * cofactors[2];
         if determinant.abs() < 1e-12 {
             return;
@@ -75,12 +125,28 @@ impl Parabola {
         for x in &self.places {
             self.value.push((cofactors[0] + cofactors[1] * x + cofactors[2] * x * x) / determinant);
             self.slope.push((cofactors[1] + cofactors[3] * x + corner * x * x) / determinant / self.half_width);
+            self.bend.push((cofactors[2] + corner * x + last * x * x) / determinant);
         }
     }
 
     /// Value of a signal; `NaN` if one of its samples is.
     pub fn value(&self, signal: &[f64]) -> f64 {
         dot(&self.value, &signal[self.first..])
+    }
+
+    /// Whether the parabola differs from a signal by no more than noise of this standard deviation. It does not at a corner, which
+    /// it cuts off.
+    pub fn follows(&self, signal: &[f64], noise: f64) -> bool {
+        let samples = &signal[self.first..self.first + self.places.len()];
+        let origin = samples[0];
+        let coefficient = |weights: &[f64]| {
+            weights.iter().zip(samples).map(|(weight, sample)| weight * (sample - origin)).sum::<f64>()
+        };
+        let (value, slope, bend) =
+            (coefficient(&self.value), coefficient(&self.slope) * self.half_width, coefficient(&self.bend));
+        let error = |(place, sample): (&f64, &f64)| sample - origin - value - slope * place - bend * place * place;
+        let squares: f64 = self.places.iter().zip(samples).map(|both| error(both).powi(2)).sum();
+        squares <= LARGEST_MISFIT * noise * noise * (samples.len() as f64 - 3.0)
     }
 
     /// Slope of a signal.

@@ -10,6 +10,8 @@ mod flow_rows;
 mod information;
 mod least_squares;
 mod observation;
+mod printed_rows;
+mod robust_covariance;
 mod seen;
 mod sensor_noise;
 mod simulated;

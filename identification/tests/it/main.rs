@@ -5,8 +5,10 @@
 mod common;
 mod contact_and_another;
 mod effects_in_pictures;
+mod energies_of_effects;
 mod full;
 mod named_additions;
+mod printed_least_squares;
 mod profile_likelihood;
 mod rounded_corners;
 mod several_effects;

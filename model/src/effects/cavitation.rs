@@ -58,6 +58,10 @@ impl Physics for Cavitation {
         PARAMETERS
     }
 
+    fn confines(&self) -> bool {
+        true
+    }
+
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         fill_below(parameters[0], parameters[1], site, now, rows);
     }

@@ -88,6 +88,10 @@ impl Physics for EndStop {
         Some(Corner::EndStop)
     }
 
+    fn confines(&self) -> bool {
+        true
+    }
+
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];

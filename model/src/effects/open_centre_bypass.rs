@@ -2,7 +2,7 @@
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
-use crate::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
+use crate::equations::smooth::orifice_root;
 use crate::machine::Machine;
 
 /// Open-centre bypass from pump to tank.
@@ -52,8 +52,9 @@ impl Physics for OpenCentreBypass {
 
     fn contribute<T: Scalar>(&self, _site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let section = bypass_section(now);
-        rows.pump_flow -=
-            parameters[0] * section * orifice_root(now.pump_pressure - now.tank_pressure, T::from(LAMINAR_PRESSURE));
+        rows.pump_flow -= parameters[0]
+            * section
+            * orifice_root(now.pump_pressure - now.tank_pressure, T::from(now.bypass_transition));
     }
 }
 

@@ -166,6 +166,12 @@ pub trait Physics: Send + Sync {
         false
     }
 
+    /// Whether it only confines the state to the domain for which \[A\] prints its equations: end stops, boiling oil. The printed
+    /// equations have no term for it.
+    fn confines(&self) -> bool {
+        false
+    }
+
     /// Whether it changes what other effects see through [`Physics::spool`], [`Physics::opening`] or [`Physics::adjust`], which
     /// are called for such effects only. The parameters of all others affect only their own rows, which makes their derivatives
     /// cheap.
@@ -287,6 +293,7 @@ hooks! {
         fn has_power() -> bool;
         fn takes_power_from_a_shaft() -> bool;
         fn has_constant_compliance() -> bool;
+        fn confines() -> bool;
         fn rounds() -> Option<Corner>;
         fn corner(parameters: &[f64]) -> Option<Corner>;
         fn finding(parameters: &[(f64, &str)]) -> Option<Finding>;

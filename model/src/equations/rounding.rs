@@ -4,6 +4,12 @@ use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, orifice_root, rounded_sign, si
 use crate::machine::Size;
 use crate::scalar::Scalar;
 
+/// A speed far below any that differs from rest, m/s: the sign of rest itself remains zero.
+const NO_SPEED: f64 = 1e-30;
+
+/// A pressure drop far below any reading, Pa: the root of zero remains zero.
+pub(super) const NO_PRESSURE: f64 = 1e-9;
+
 /// Widths and shapes of the corners at one cylinder. Effects of the rounding family override the equations' defaults.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rounding<T> {
@@ -61,6 +67,16 @@ impl<T: Scalar> Rounding<T> {
             reversal_speed: T::from(SLIP_SPEED * size.sliding),
             corner_sharpness: None,
             transition_pressure: T::from(LAMINAR_PRESSURE),
+            end_stop: None,
+        }
+    }
+
+    /// No rounding: `sgn(v)` and `sgn(dp) sqrt|dp|` as \[A\] prints them.
+    pub fn none() -> Self {
+        Rounding {
+            reversal_speed: T::from(NO_SPEED),
+            corner_sharpness: None,
+            transition_pressure: T::from(NO_PRESSURE),
             end_stop: None,
         }
     }

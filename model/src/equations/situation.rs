@@ -1,7 +1,7 @@
 //! The values that effects can read.
 
 use super::Rounding;
-use super::smooth::at_most;
+use super::smooth::{LAMINAR_PRESSURE, at_most};
 use crate::effects::Site;
 use crate::machine::{Chambers, Machine, Size};
 use crate::scalar::{Dual, Scalar, constant};
@@ -133,6 +133,8 @@ pub struct Situation<'m, T> {
     pub pistons: Vec<Piston<T>>,
     /// Pump or supply pressure pp, Pa.
     pub pump_pressure: T,
+    /// Pressure drop below which the flow of the bypass is laminar, Pa.
+    pub bypass_transition: f64,
     /// Tank pressure pt, Pa.
     pub tank_pressure: T,
     /// Pump flow Qp, m³/s.
@@ -173,6 +175,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             time: zero,
             pistons: vec![piston; machine.cylinders.len()],
             pump_pressure: zero,
+            bypass_transition: LAMINAR_PRESSURE,
             tank_pressure: zero,
             pump_flow: zero,
         }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::rounding::NO_PRESSURE;
 use super::{Inputs, Instruments, Layout, Rows, Situation};
 use crate::effects::{ActsOn, Number, Site};
 use crate::machine::{Growth, Size, Supply};
@@ -22,6 +23,8 @@ pub struct System<'m> {
     /// Whether an effect needs the metering flows.
     reads_metering_flows: bool,
     own_instruments: Instruments<f64>,
+    /// Whether laws have their corners and effects that only confine the state are left out.
+    pub(super) as_printed: bool,
     /// Size of each cylinder.
     pub(super) sizes: Vec<Size>,
     /// Size of the whole machine.
@@ -80,6 +83,7 @@ impl<'m> System<'m> {
             remembering,
             reads_metering_flows,
             own_instruments,
+            as_printed: false,
             sizes: (0..model.machine.cylinders.len())
                 .map(|index| model.machine.size_at(Site::Cylinder(index)))
                 .collect(),
@@ -87,6 +91,14 @@ impl<'m> System<'m> {
         };
         system.own_instruments = system.instruments(&model.parameter_values());
         system
+    }
+
+    /// The equations as \[A\] Eq. 4-7 print them: signs and roots are not rounded, and effects that only confine the state have no
+    /// term. They are for regressions at measured states; a simulation needs the rounding.
+    #[must_use]
+    pub fn as_printed(mut self) -> Self {
+        self.as_printed = true;
+        self
     }
 
     /// The model.
@@ -118,12 +130,11 @@ impl<'m> System<'m> {
     pub fn workspace<T: Number>(&self) -> Workspace<'m, T> {
         let zero = T::from(0.0);
         let joints = self.layout.joints;
-        Workspace {
-            situation: Situation::empty(&self.model.machine),
-            rows: Rows::zero(joints),
-            mass: vec![zero; joints * joints],
-            torque: vec![zero; joints],
+        let mut situation = Situation::empty(&self.model.machine);
+        if self.as_printed {
+            situation.bypass_transition = NO_PRESSURE;
         }
+        Workspace { situation, rows: Rows::zero(joints), mass: vec![zero; joints * joints], torque: vec![zero; joints] }
     }
 
     /// Writes the time derivative of `state` (in the order of [`Layout`]) to `rates`.
@@ -169,7 +180,7 @@ impl<'m> System<'m> {
         wanted: impl Fn(ActsOn) -> bool,
     ) {
         for (number, effect) in self.model.effects.iter().enumerate() {
-            if wanted(effect.physics.card().acts_on) {
+            if wanted(effect.physics.card().acts_on) && !(self.as_printed && effect.physics.confines()) {
                 self.contribute_one(number, workspace, parameters, state);
             }
         }

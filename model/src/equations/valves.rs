@@ -48,7 +48,7 @@ impl<'m> System<'m> {
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
             piston.hose_resistance = None;
-            piston.rounding = Rounding::of_the_equations(size);
+            piston.rounding = if self.as_printed { Rounding::none() } else { Rounding::of_the_equations(size) };
         }
         for &number in &self.adjusting {
             let effect = &self.model.effects[number];

@@ -205,6 +205,24 @@ impl InputSignals {
         self.orifice_area[cylinder].1[sample] = area;
     }
 
+    /// Puts readings, wherever there are any, in the place of the estimates of opening and tank pressure that they were averaged to:
+    /// for regressions on the signals as they were measured.
+    #[must_use]
+    pub fn with_readings(mut self, model: &Model, recording: &Recording) -> Self {
+        let put = |estimate: &mut [f64], readings: &[f64]| {
+            for (estimate, &reading) in estimate.iter_mut().zip(readings).filter(|(_, reading)| reading.is_finite()) {
+                *estimate = reading;
+            }
+        };
+        for ((_, opening), cylinder) in self.orifice_area.iter_mut().zip(&model.machine.cylinders) {
+            if let Ok(signals) = recording.cylinder(&cylinder.name) {
+                put(opening, &signals.orifice_area);
+            }
+        }
+        put(&mut self.tank_pressure, &recording.tank_pressure);
+        self
+    }
+
     /// Supply pressure at each sample, Pa; zero if the pump line's pressure is a state of the model.
     pub fn supply_pressure(&self) -> &[f64] {
         &self.supply_pressure

@@ -1,0 +1,58 @@
+//! Covariance of least-squares coefficients whose residuals are correlated over time.
+
+use nalgebra::{DMatrix, DVector};
+
+/// `B (sum over lags of w_l G_l) B`, with B the inverse of `X' X` and G_l the sum of `g_t g_(t-l)'` over the scores: Newey and
+/// West 1987, with weights that fall linearly to zero at `lags`. It holds for residuals that are correlated over less time than
+/// that and differ in size, and tends to the ordinary covariance where neither is so.
+///
+/// `scores` has one row for each moment: the sum of regressors times residual over the equations of the moment. A moment with the
+/// next one missing (`follows` is false) starts a new stretch.
+pub(super) fn newey_west(scores: &DMatrix<f64>, follows: &[bool], inverse: &DMatrix<f64>, lags: usize) -> DMatrix<f64> {
+    let (moments, coefficients) = scores.shape();
+    let mut middle = DMatrix::<f64>::zeros(coefficients, coefficients);
+    let mut first = 0;
+    while first < moments {
+        let last = (first + 1..moments).find(|&moment| !follows[moment]).unwrap_or(moments);
+        // Two moments a lag apart are in `lags + 1 - lag` of all windows of this length: their sums give the weights.
+        let mut sums = vec![DVector::<f64>::zeros(coefficients)];
+        for moment in first..last {
+            sums.push(&sums[moment - first] + scores.row(moment).transpose());
+        }
+        for end in 1..=last - first + lags {
+            let window = &sums[end.min(last - first)] - &sums[end.saturating_sub(lags + 1)];
+            middle.ger(1.0 / (lags as f64 + 1.0), &window, &window, 1.0);
+        }
+        first = last;
+    }
+    inverse * middle * inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mean of residuals that are the same for four samples at a time has the variance of a quarter as many.
+    #[test]
+    fn correlated_residuals_widen_the_variance_of_a_mean() {
+        let count = 4000;
+        // A fixed sequence without structure: fractional parts of multiples of the golden ratio, in a shuffled order.
+        let level = |block: usize| ((block * block) as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let scores = DMatrix::from_fn(count, 1, |row, _| level(row / 4));
+        let inverse = DMatrix::from_element(1, 1, 1.0 / count as f64);
+        let white = newey_west(&scores, &vec![true; count], &inverse, 0)[(0, 0)];
+        let robust = newey_west(&scores, &vec![true; count], &inverse, 40)[(0, 0)];
+        assert!((white * count as f64 * 12.0 - 1.0).abs() < 0.1, "{white}");
+        assert!((robust / white - 4.0).abs() < 0.8, "{}", robust / white);
+    }
+
+    #[test]
+    fn stretches_apart_are_independent() {
+        let scores = DMatrix::from_column_slice(4, 1, &[1.0, 1.0, 1.0, 1.0]);
+        let one = DMatrix::from_element(1, 1, 1.0);
+        let together = newey_west(&scores, &[true; 4], &one, 1)[(0, 0)];
+        let apart = newey_west(&scores, &[true, true, false, true], &one, 1)[(0, 0)];
+        // 4 + 2 * 3 / 2, and 4 + 2 * 2 / 2.
+        assert!((together - 7.0).abs() < 1e-12 && (apart - 6.0).abs() < 1e-12, "{together} {apart}");
+    }
+}
