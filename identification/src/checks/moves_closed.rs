@@ -48,14 +48,14 @@ pub(super) fn moves_while_closed(
     let is_closed = |sample: usize| opening[sample].abs() <= limit;
     let mut travelled = 0.0;
     let mut first = None;
-    for sample in 0..opening.len() {
+    for (sample, speed) in speeds.iter().enumerate() {
         if !is_closed(sample) {
             first = None;
             continue;
         }
         let begin = *first.get_or_insert(recording.time[sample]) + RUN_OUT * unit;
-        if recording.time[sample] > begin && speeds[sample].abs() > LEAST_SPEED * fastest {
-            travelled += speeds[sample].abs() * (recording.time[sample] - recording.time[sample - 1]);
+        if recording.time[sample] > begin && speed.abs() > LEAST_SPEED * fastest {
+            travelled += speed.abs() * (recording.time[sample] - recording.time[sample - 1]);
         }
     }
     let least = (LEAST_TRAVEL * constants.usual_travel()).max(20.0 * noise_level(displacement));
