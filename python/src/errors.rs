@@ -52,6 +52,7 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::ValveTest { .. }
         | WorkError::PositionTest { .. }
         | WorkError::Unreadable { .. }
+        | WorkError::MappedUnit(_)
         | WorkError::Changed { .. } => ReadError::new_err(text),
         WorkError::Check(refusal) => CheckError::new_err(match refusal.name() {
             Some(name) => format!("{text}; if this is right, say accept=[\"{name}\"]"),
