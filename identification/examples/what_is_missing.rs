@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("fit to the recording that was not fitted, given and refined");
     let (before, after) = (compare(&given, &judging)?, compare(&refined.model, &judging)?);
     for (before, after) in before.signals.iter().zip(&after.signals) {
-        println!("  {:<20} {:6.1} % {:6.1} %", before.name, before.fit, after.fit);
+        println!("  {:<20} {:6.1} % {:6.1} %", before.name, before.error.fit_percent(), after.error.fit_percent());
     }
     Ok(())
 }

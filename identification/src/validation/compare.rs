@@ -83,7 +83,7 @@ pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec
 /// let (right, wrong) = (compare(&machine, &recording)?, compare(&given, &recording)?);
 /// assert!(right.mean_error() < wrong.mean_error());
 /// for signal in &wrong.signals {
-///     println!("{}: fit {:.1} %", signal.name, signal.fit);
+///     println!("{}: fit {:.1} %", signal.name, signal.error.fit_percent());
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

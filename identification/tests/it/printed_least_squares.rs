@@ -1,5 +1,6 @@
 //! The paper's least squares against the solution of its printed equations by another program.
 
+#![allow(clippy::excessive_precision)] // digits as numpy prints them
 use excavator_identification::regression::{Regression, least_squares};
 use excavator_model::document::built_in;
 use excavator_model::recording::Recording;
@@ -8,9 +9,12 @@ use excavator_model::recording::Recording;
 /// nm, p+, p- and pp in 0.1 Pa, u in 1e-12 m². Both programs read these integers, so their rounding is in both.
 const SINE: &str = include_str!("../data/sine_of_the_paper.txt");
 
+/// Noise, mechanical parameters, hydraulic parameters, condition numbers.
+type Solution = (f64, [f64; 4], [f64; 8], [f64; 4]);
+
 /// What `identification/tests/data/printed_least_squares.py` prints with numpy 2.4: pressure noise, Pa; J2, Fd2, Fc2, W2; b, bp, Cf+,
 /// Cf-, Cft, Ce+, Ce-, Ci; unscaled and scaled condition numbers of both groups.
-const BY_NUMPY: [(f64, [f64; 4], [f64; 8], [f64; 4]); 3] = [
+const BY_NUMPY: [Solution; 3] = [
     (
         0.0,
         [2.406007654590670e+02, 1.360216357524537e+04, 1.360196071893889e+02, 1.902581305902370e+02],

@@ -115,7 +115,7 @@ fn print_row(name: &str, comparisons: &[Comparison]) {
     let number = |value: f64| if value < 1e-2 { format!("{value:.1e}") } else { format!("{value:.3}") };
     let signal = |name: &str| {
         let own = comparisons.iter().flat_map(|one| one.signals.iter().filter(|signal| signal.name.ends_with(name)));
-        number(own.map(|signal| signal.normalised_error).sum::<f64>() / comparisons.len() as f64)
+        number(own.map(|signal| signal.error.normalised()).sum::<f64>() / comparisons.len() as f64)
     };
     let mean = comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64;
     let cells = ["displacement", "velocity", "cap_pressure", "rod_pressure"].map(signal);
@@ -163,7 +163,7 @@ fn assert_as_good_as_the_paper(model: &Model) {
             .iter()
             .map(|name| {
                 let name = format!("load.{name}");
-                comparison.signals.iter().find(|signal| signal.name == name).unwrap().normalised_error
+                comparison.signals.iter().find(|signal| signal.name == name).unwrap().error.normalised()
             })
             .collect();
         println!("B = {amplitude}: x, v, P1, P2 {errors:.5?}, published {published:?}");
