@@ -80,6 +80,7 @@ impl Parabola {
         let cut = at - time[first] < 0.6 * half_width || time[last - 1] - at < 0.6 * half_width;
         if last - first < FEWEST || cut {
             self.places.clear();
+            self.value.clear();
             return false;
         }
         let places = time[first..last].iter().map(|t| (t - at) / half_width);

@@ -229,7 +229,7 @@ fn emps_is_identified_straight_from_its_matlab_file() {
     let Some(shared) = shared() else { return };
     let folder = tempfile::tempdir().unwrap();
     let identify = |words: &[&str]| {
-        let words = [&["identify", "--model", "emps", "--json", "-", "--bag"], words].concat();
+        let words = [&["identify", "--model", "emps", "--method", "weak-form", "--json", "-", "--bag"], words].concat();
         json(&excavator(folder.path(), &words))
     };
     let table = shared.join("realdata/emps/DATA_EMPS.mat");
