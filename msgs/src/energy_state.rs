@@ -11,7 +11,7 @@ pub struct EnergyState {
     pub header: Header,
     /// One balance per cylinder.
     pub cylinders: Vec<CylinderEnergy>,
-    /// Pump pressure times pump flow, W.
+    /// `b (exp(p/b) - 1) Q`, W: pump flow Q with its pressure p and the energy of its compressed oil, b the bulk modulus of the pump line.
     pub pump_power: f64,
     /// Power throttled to tank through the open centre, W.
     pub bypass_loss: f64,

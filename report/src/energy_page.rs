@@ -5,7 +5,7 @@ use excavator_model::Model;
 use maud::{Markup, html};
 
 use super::energy_flow::{energy_flow, whole};
-use super::energy_tables::{energies, evidence, ledger, pump_line};
+use super::energy_tables::{by_opening, energies, evidence, ledger, pump_line};
 use super::numbers::{decimal, percent, significant};
 use super::page::{Section, page, tile};
 use super::power_plots::{PowerLine, PowerPlot};
@@ -68,7 +68,7 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
         Section {
             anchor: "flow",
             title: "Where the energy went".into(),
-            body: html! { (energy_flow(model, totals)) (energies(model, analysis)) h3 { "The pump line" } (pump_line(model, analysis)) },
+            body: html! { (energy_flow(model, totals)) (energies(model, analysis)) h3 { "By the sign of the opening" } (by_opening(model, analysis)) h3 { "The pump line" } (pump_line(model, analysis)) },
         },
         Section {
             anchor: "ledger",
@@ -89,7 +89,11 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
         Section {
             anchor: "rates",
             title: "Rate of the stored energy".into(),
-            body: html! { (each(&|trace, number| rates(model, trace, number, budget))) @if let Some(reason) = &analysis.simulation_failed { p.note { "No numerical results: " (reason) } } },
+            body: html! {
+                @if let Some(criterion) = analysis.phase_criterion() { p { (criterion.sentence) } }
+                (each(&|trace, number| rates(model, trace, number, budget)))
+                @if let Some(reason) = &analysis.simulation_failed { p.note { "No numerical results: " (reason) } }
+            },
         },
         Section {
             anchor: "supply",
@@ -136,7 +140,7 @@ fn rates(model: &Model, trace: &CylinderTraces, number: usize, budget: usize) ->
         @if let Some(phase) = &trace.phase {
             p.note {
                 "At " (significant(phase.frequency, 3)) " Hz, the analytical rate " (against(phase.analytical))
-                " the experimental rate, and the numerical rate " (against(phase.numerical)) " it. The limit is 90°. The band is the 95 % interval from sensor noise. "
+                " the experimental rate, and the numerical rate " (against(phase.numerical)) " it. The band is the 95 % interval from sensor noise. "
                 "Experimental: slope of the energy stored in the measured state. Analytical: supply and dissipation at the measured state. Numerical: the same at the simulated state."
             }
         }

@@ -1,6 +1,7 @@
 //! Tables of energies and of the ledger.
 
 use excavator_identification::energy::{EnergyAnalysis, MissingPower, Regime, Totals};
+use excavator_identification::results::ByOpening;
 use excavator_model::Model;
 use excavator_model::effects::ActsOn;
 use excavator_model::machine::Supply;
@@ -90,6 +91,30 @@ fn lines<'a>(model: &Model, totals: &'a Totals) -> Vec<Line<'a>> {
         add(UNEXPLAINED.into(), None, totals.residual(index), false);
     }
     lines
+}
+
+/// Mean powers of each cylinder by the sign of its opening.
+pub(super) fn by_opening(model: &Model, analysis: &EnergyAnalysis) -> Markup {
+    html! {
+        div.wide { table.data {
+            thead { tr {
+                th { "Opening" } th.n { "Time, s" } th.n { "Supplied, W" } th.n { "Gained by the oil, W" } th.n { "Gained by the links, W" }
+                th.n { "Lost, W" }
+            } }
+            tbody { @for one in &analysis.by_opening {
+                @let both = ByOpening::of(one);
+                @for (sign, powers) in [("positive", both.positive), ("negative", both.negative)] {
+                    tr {
+                        td { (words::capitalised(&model.machine.cylinders[one.cylinder].name)) ", " (sign) }
+                        @for value in [powers.duration, powers.supply, powers.oil, powers.links, powers.dissipation.map(|power| -power)] {
+                            td.n { (value.map_or(NOTHING.to_string(), |value| significant(value, 3))) }
+                        }
+                    }
+                }
+            } }
+        } }
+        p.note { "Means over the time in which the opening has this sign. Supplied, negative: the cylinder gives power back through its valve." }
+    }
 }
 
 /// The balance of the pump line in one row.

@@ -1,9 +1,10 @@
 //! Plots energies and powers over time, with error bands.
 
+use excavator_identification::results::thinned;
 use maud::{Markup, html};
 
 use super::numbers::SIDES_95;
-use super::thinning;
+use super::plot_gaps::gaps;
 use super::time_plots::{array, plot_box, shortest, text};
 
 /// One line of a plot.
@@ -47,7 +48,7 @@ impl PowerPlot<'_> {
             return html! { p.empty { "No values to plot." } };
         }
         let guides: Vec<&[f64]> = drawn.iter().map(|line| line.values).collect();
-        let kept = thinning::indices(&guides, time.len(), self.budget * guides.len());
+        let kept = thinned(&guides, time.len(), self.budget * guides.len());
         let (mut series, mut bands) = (Vec::new(), Vec::new());
         for line in &drawn {
             if let Some(errors) = line.errors.filter(|errors| errors.iter().any(|error| error.is_finite())) {
@@ -73,7 +74,7 @@ impl PowerPlot<'_> {
             text(self.unit),
             self.height,
             self.last,
-            thinning::gaps(time, &kept),
+            gaps(time, &kept),
             seconds.join(","),
             bands.join(","),
             series.join(",")

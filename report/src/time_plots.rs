@@ -1,11 +1,12 @@
 //! Plots measured and simulated signals over time, with the error below on the same axis.
 
+use excavator_identification::results::thinned;
 use excavator_identification::validation::{Comparison, SignalComparison};
 use excavator_model::recording::is_measured;
 use maud::{Markup, PreEscaped, html};
 
 use super::machine_picture::machine_picture;
-use super::thinning;
+use super::plot_gaps::gaps;
 use super::units::{self, Unit};
 use super::{numbers, words};
 
@@ -108,7 +109,7 @@ fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget:
         .collect();
     let mut guides: Vec<&[f64]> = vec![measured];
     guides.extend(errors.first().map(|(_, values)| values.as_slice()));
-    let kept = thinning::indices(&guides, time.len(), budget);
+    let kept = thinned(&guides, time.len(), budget);
     let unit = units::of_signal(&first.machine, name);
     let mut lines = vec![(MEASURED, measured)];
     lines.extend(simulated.iter().copied());
@@ -164,7 +165,7 @@ impl Plot<'_> {
             text(self.unit.symbol),
             self.height,
             self.last,
-            thinning::gaps(time, kept),
+            gaps(time, kept),
             seconds.join(","),
             series.join(",")
         );

@@ -114,9 +114,11 @@ def test_oil_stores_what_its_pressure_says(pairs, parameters):
         assert stored.rod_internal == pytest.approx(rod * arm.rod_pressure**2 / spring, rel=0.02, abs=1e-3)
 
 
-def test_pump_power_is_pressure_times_flow(pairs):
+def test_pump_power_is_the_energy_of_compressed_oil(pairs, parameters):
+    modulus = parameters["pump.bulk_modulus"]
     for state, energy in pairs:
-        assert energy.pump_power == pytest.approx(state.pump_pressure * state.pump_flow, rel=0.05)
+        expected = modulus * math.expm1(state.pump_pressure / modulus) * state.pump_flow
+        assert energy.pump_power == pytest.approx(expected, rel=0.05)
 
 
 def test_throttles_take_power_out(pairs):

@@ -15,7 +15,7 @@ use super::cycle::{Cycles, period};
 use super::judgement::Judge;
 use super::noise::{NoiseStudy, study_noise};
 use super::windows::{Window, windows};
-use super::{Books, EnergyError, EnergySettings, Place, Totals, Traces};
+use super::{Books, ByOpening, EnergyError, EnergySettings, Place, Totals, Traces};
 use crate::validation::dominant_frequency;
 
 /// Number of blocks that are processed in parallel.
@@ -51,6 +51,7 @@ pub struct Analyser<'m> {
     places: Vec<Place>,
     judge: Judge,
     totals: Totals,
+    by_opening: Vec<ByOpening>,
     cycles: Option<Cycles>,
     windows: Vec<WindowPoint>,
     window_stride: usize,
@@ -92,6 +93,7 @@ impl<'m> Analyser<'m> {
             judge: Judge::new(with_cylinder, settings),
             places,
             totals: Totals::new(model),
+            by_opening: ByOpening::all(model),
             cycles: None,
             windows: Vec::new(),
             window_stride: 1,
@@ -165,6 +167,7 @@ impl<'m> Analyser<'m> {
             duration: self.last_time,
             gaps: self.gaps,
             totals: self.totals,
+            by_opening: self.by_opening,
             cycle: self.cycles.and_then(Cycles::finish),
             places: self.judge.finish(),
             windows: self.windows,
@@ -295,6 +298,7 @@ impl<'m> Analyser<'m> {
             }
             self.accounted = true;
             self.totals.add(books, entry);
+            self.by_opening.iter_mut().for_each(|one| one.add(books, entry));
             if let Some(cycles) = &mut self.cycles {
                 cycles.add(books, entry);
             }

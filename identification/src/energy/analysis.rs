@@ -4,7 +4,7 @@ use excavator_model::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{PlaceJudgement, Totals, Traces};
+use super::{ByOpening, PhaseCriterion, PlaceJudgement, Totals, Traces};
 use crate::nullable::Nullable;
 
 /// Energies per cycle of the work.
@@ -36,10 +36,14 @@ pub struct PhaseDelays {
 }
 
 impl PhaseDelays {
+    /// All lags, degrees.
+    pub(super) fn all(&self) -> [Option<f64>; 3] {
+        [self.analytical, self.numerical, self.numerical_behind_analytical]
+    }
+
     /// The largest magnitude, degrees.
     pub fn largest(&self) -> Option<f64> {
-        let all = [self.analytical, self.numerical, self.numerical_behind_analytical];
-        all.into_iter().flatten().map(f64::abs).max_by(f64::total_cmp)
+        self.all().into_iter().flatten().map(f64::abs).max_by(f64::total_cmp)
     }
 }
 
@@ -93,6 +97,8 @@ pub struct EnergyAnalysis {
     pub gaps: usize,
     /// Energies over the recording.
     pub totals: Totals,
+    /// The same by the sign of each cylinder's opening.
+    pub by_opening: Vec<ByOpening>,
     /// Energies per cycle, if the command repeats.
     pub cycle: Option<Cycle>,
     /// The ledger of each place.
@@ -128,6 +134,11 @@ impl EnergyAnalysis {
             stored: self.totals.pump_line,
             residual: self.totals.pump_residual(),
         })
+    }
+
+    /// Whether the three rates of the stored energy agree in phase; `None` if no frequency of the excitation stands out.
+    pub fn phase_criterion(&self) -> Option<PhaseCriterion> {
+        PhaseCriterion::of(self.traces.cylinders.iter().filter_map(|trace| trace.phase.as_ref()))
     }
 
     /// Whether the ledger closes at every place.

@@ -60,7 +60,7 @@ pub struct Books {
     pub cylinders: Vec<CylinderBooks>,
     /// Energy of the pump line's oil, J.
     pub pump_line: Vec<f64>,
-    /// Power of the pump, W.
+    /// Power of the pump `e(pp) Qp`, W, as in [`Ledger`].
     pub pump_power: Vec<f64>,
     /// One entry per effect of the model.
     pub effects: Vec<EffectBooks>,

@@ -15,7 +15,7 @@ use crate::energy;
 pub struct Energies {
     /// Time that was accounted for, s; gaps are not.
     pub duration: Option<f64>,
-    /// Energy of the pump, J.
+    /// Energy of the pump, J: integral of `b (exp(p/b) - 1) Q`, with pump flow Q, pressure p and bulk modulus b of the pump line.
     pub pump: Option<f64>,
     /// Gain of the pump line's energy, J.
     pub pump_line: Option<f64>,

@@ -6,8 +6,8 @@ use excavator_model::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Energies, MissingPower, finite};
-use crate::energy::{self, EnergyAnalysis, PhaseDelays, Regime, missing_power};
+use super::{ByOpening, Energies, EnergyTrace, MissingPower, finite};
+use crate::energy::{self, EnergyAnalysis, PhaseCriterion, PhaseDelays, Regime, missing_power};
 
 /// Where the energy of a recording went, and whether the model's ledger closes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,10 +26,16 @@ pub struct Energy {
     pub energy: Energies,
     /// Energies per cycle of the work; `null` where the command does not repeat.
     pub cycle: Option<Cycle>,
+    /// By cylinder: mean powers by the sign of the valve's opening.
+    pub by_opening: BTreeMap<String, ByOpening>,
     /// Balance of the pump line; `null` for a machine whose supply is not part of the model.
     pub pump_line: Option<PumpLine>,
     /// By cylinder, or by machine for all cylinders together: how far one rate of the stored energy lags behind another one.
     pub phase_delays_degrees: BTreeMap<String, PhaseDelays>,
+    /// Whether these lags are small enough; `null` where no frequency of the excitation stands out.
+    pub phase_criterion: Option<PhaseCriterion>,
+    /// By cylinder, or by machine for all cylinders together: energy and powers over time.
+    pub traces: BTreeMap<String, EnergyTrace>,
     /// The ledger, place by place.
     pub ledger: Vec<LedgerPlace>,
     /// Whether the ledger closes at every place.
@@ -125,6 +131,8 @@ impl Energy {
     pub fn of(model: &Model, analysis: &EnergyAnalysis) -> Self {
         let phases = analysis.traces.cylinders.iter();
         let phases = phases.filter_map(|trace| Some((trace.name.clone(), trace.phase?)));
+        let traces = analysis.traces.cylinders.iter();
+        let name = |cylinder: usize| model.machine.cylinders[cylinder].name.clone();
         Energy {
             source: analysis.source.clone(),
             samples: analysis.samples,
@@ -132,8 +140,11 @@ impl Energy {
             gaps: analysis.gaps,
             energy: Energies::of(model, &analysis.totals, true),
             cycle: analysis.cycle.as_ref().map(|cycle| Cycle::of(model, cycle)),
+            by_opening: analysis.by_opening.iter().map(|one| (name(one.cylinder), ByOpening::of(one))).collect(),
             pump_line: analysis.pump_line(model).as_ref().map(PumpLine::of),
             phase_delays_degrees: phases.collect(),
+            phase_criterion: analysis.phase_criterion(),
+            traces: traces.map(|trace| (trace.name.clone(), EnergyTrace::of(trace))).collect(),
             ledger: analysis.places.iter().map(|place| LedgerPlace::of(model, place)).collect(),
             ledger_closes: analysis.is_explained(),
             missing_power: missing_power(model, analysis).iter().map(MissingPower::of).collect(),

@@ -7,6 +7,7 @@
 //!
 //! Programs that read results must let pass what they do not know: fields may be added.
 
+mod by_opening;
 mod candidate;
 mod characterisation;
 mod comparison;
@@ -14,6 +15,7 @@ mod determination;
 mod diagnosis;
 mod energies;
 mod energy;
+mod energy_traces;
 mod estimate;
 mod friction;
 mod gain;
@@ -30,9 +32,11 @@ mod separation;
 mod signal;
 #[cfg(test)]
 mod tests;
+mod thinning;
 mod unexplained;
 mod valve_leakage;
 
+pub use by_opening::{ByOpening, MeanPowers};
 pub use candidate::{Bootstrap, Candidate};
 pub use characterisation::{Characterisation, CylinderCharacterisation};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
@@ -42,6 +46,7 @@ pub use diagnosis::{
 };
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
 pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PumpLine, ValveSection};
+pub use energy_traces::{EnergyTrace, PowerTrace};
 pub use estimate::{Estimate, Outcome, Refused};
 pub use friction::{Friction, FrictionTerm};
 pub use gain::{DeadZone, Gain, GainPoint, Polynomial};
@@ -56,6 +61,7 @@ pub use refinement::{Refinement, RefinementStep};
 pub use schemas::schemas;
 pub use separation::{Rival, Separation};
 pub use signal::{Correlation, PhaseShare, SignalComparison};
+pub use thinning::thinned;
 pub use unexplained::Unexplained;
 pub use valve_leakage::{ChamberLeakage, ValveLeakage};
 

@@ -9,7 +9,7 @@ use crate::error::VerbError;
 use crate::files::{self, Inputs};
 use crate::next_step::{NextStep, print_next};
 use crate::sources;
-use crate::terminal::{energy_table, ledger_table, print};
+use crate::terminal::{energy_table, ledger_table, opening_table, print};
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), arguments.result.output()];
@@ -49,6 +49,7 @@ fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
     if let Some(cycle) = &analysis.cycle {
         print(&format!("energies per cycle are means over {} cycles of {:.3} s", cycle.count, cycle.period));
     }
+    print(&opening_table(model, analysis).to_string());
     for trace in &analysis.traces.cylinders {
         if let Some(phase) = &trace.phase {
             let degrees = |lag: Option<f64>| lag.map_or("-".to_string(), |lag| format!("{lag:.1}°"));
@@ -60,6 +61,9 @@ fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
                 degrees(phase.numerical)
             ));
         }
+    }
+    if let Some(criterion) = analysis.phase_criterion() {
+        print(&criterion.sentence);
     }
     if let Some(reason) = &analysis.simulation_failed {
         print(&format!("there is no numerical dH/dt: {reason}"));

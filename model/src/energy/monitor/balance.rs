@@ -10,7 +10,7 @@ pub struct Balance {
     pub nanoseconds: i64,
     /// One entry per cylinder of the machine.
     pub cylinders: Vec<CylinderBalance>,
-    /// Power of the pump, W.
+    /// Power of the pump `e(pp) Qp`, W, as in [`Ledger`](crate::energy::Ledger).
     pub pump_power: f64,
     /// Power lost through bypass, relief valve and pump leakage, W.
     pub bypass_loss: f64,

@@ -2,6 +2,7 @@
 
 use comfy_table::{Cell, Table};
 use excavator_identification::energy::{EnergyAnalysis, Totals};
+use excavator_identification::results::ByOpening;
 use excavator_model::Model;
 use excavator_model::effects::ActsOn;
 use excavator_model::site_name;
@@ -65,6 +66,21 @@ fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
         lines.push((format!("  not explained at the {name}"), totals.residual(index), true));
     }
     lines
+}
+
+/// Mean powers of each cylinder by the sign of its opening, two rows each.
+pub fn opening_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
+    let mut rows = table(&["opening", "s", "supplied W", "oil gains W", "links gain W", "lost W"]);
+    for one in &analysis.by_opening {
+        let (name, both) = (&model.machine.cylinders[one.cylinder].name, ByOpening::of(one));
+        for (sign, powers) in [("positive", both.positive), ("negative", both.negative)] {
+            let lost = powers.dissipation.map(|power| -power);
+            let values = [powers.duration, powers.supply, powers.oil, powers.links, lost];
+            let cells = values.map(|value| right(value.map_or("-".into(), |value| fixed(value, 1))));
+            rows.add_row(std::iter::once(Cell::new(format!("{name} {sign}"))).chain(cells));
+        }
+    }
+    rows
 }
 
 /// The ledger, one row per equation.

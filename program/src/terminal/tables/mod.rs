@@ -6,7 +6,7 @@ mod pairs;
 mod proposals;
 
 pub use characterisation::{characterisation_table, refusals};
-pub use energy::{energy_table, ledger_table};
+pub use energy::{energy_table, ledger_table, opening_table};
 pub use pairs::pair_table;
 pub use proposals::proposal_table;
 
