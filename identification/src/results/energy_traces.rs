@@ -9,10 +9,10 @@ use super::{finite, thinned};
 use crate::energy;
 
 /// Largest number of samples of a trace, about.
-const SAMPLES: usize = 1000;
+const SAMPLES: usize = 500;
 
 /// Energy and powers of one cylinder with its joint, or of all together, over the first minutes of the recording. Samples are thinned to
-/// about a thousand, which keep the extremes of rate, supply and dissipation; every column has one value for each time. `null` where a
+/// about 500, which keep the extremes of rate, supply and dissipation; every column has one value for each time. `null` where a
 /// value is not known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]

@@ -1,0 +1,9 @@
+//! What docs/papers.md and docs/energy.md state of \[A\], each block made by simulation with seeds.
+
+mod cross_validation;
+mod energy_flow;
+mod experiment;
+mod identification_errors;
+mod page;
+
+pub use page::{BLOCKS, Block, blocks_of, written};

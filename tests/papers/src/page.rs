@@ -1,0 +1,50 @@
+//! The blocks of the pages, between marks.
+
+use crate::{cross_validation, energy_flow, identification_errors};
+
+/// A part of a page that is made by a function.
+pub struct Block {
+    /// Name in its marks.
+    pub name: &'static str,
+    /// Page under `docs/`.
+    pub page: &'static str,
+    /// Whether it takes seconds, not minutes.
+    pub is_short: bool,
+    make: fn() -> Result<String, String>,
+}
+
+/// All blocks.
+pub const BLOCKS: [Block; 4] = [
+    Block {
+        name: "condition-numbers",
+        page: "papers.md",
+        is_short: true,
+        make: identification_errors::condition_numbers,
+    },
+    Block { name: "identification-errors", page: "papers.md", is_short: false, make: identification_errors::errors },
+    Block { name: "cross-validation", page: "papers.md", is_short: false, make: cross_validation::cross_validation },
+    Block { name: "energy-of-the-paper", page: "energy.md", is_short: true, make: energy_flow::energy_flow },
+];
+
+/// The page with the block made anew.
+///
+/// # Errors
+/// A sentence if the page lacks the marks, or a simulation or fit fails.
+pub fn written(block: &Block, page: &str) -> Result<String, String> {
+    let (before, after) = blocks_of(block, page)?;
+    Ok(format!("{before}{}\n{after}", (block.make)()?.trim_end()))
+}
+
+/// What stands before the text of a block, its mark included, and what stands after it.
+///
+/// # Errors
+/// A sentence if the page lacks the marks.
+pub fn blocks_of<'p>(block: &Block, page: &'p str) -> Result<(&'p str, &'p str), String> {
+    let (start, end) = (
+        format!("<!-- {}: cargo run --release -p excavator-papers -->\n", block.name),
+        format!("<!-- end of {} -->", block.name),
+    );
+    let first = page.find(&start).ok_or(format!("{} has no line {}", block.page, start.trim_end()))? + start.len();
+    let last = page[first..].find(&end).ok_or(format!("{} has no line {end}", block.page))? + first;
+    Ok((&page[..first], &page[last..]))
+}
