@@ -73,8 +73,18 @@ impl Sine {
     }
 }
 
-/// What instruments read of it, with noise of `pressure` (Pa).
+/// What the instruments of the bench of \[B\] read, with noise of 20 µm, 2 kPa and 0.1 mm².
+pub fn noisy(recording: &Recording, seed: u64) -> Recording {
+    read_with(recording, [2e-5, 2e3, 1e-7], seed)
+}
+
+/// What instruments read of the sine, with noise of `pressure` (Pa).
 pub fn read(recording: &Recording, pressure: f64, seed: u64) -> Recording {
+    read_with(recording, [DISPLACEMENT_NOISE, pressure, OPENING_NOISE], seed)
+}
+
+/// With noise of displacement (m), pressures (Pa) and opening (m²). A supply whose pressure is given has none.
+fn read_with(recording: &Recording, [displacement, pressure, opening]: [f64; 3], seed: u64) -> Recording {
     let mut recording = recording.clone();
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut add = |signal: &mut [f64], level: f64| {
@@ -87,11 +97,13 @@ pub fn read(recording: &Recording, pressure: f64, seed: u64) -> Recording {
     arm.velocity.fill(f64::NAN);
     arm.joint_angle.fill(f64::NAN);
     arm.rod_force.fill(f64::NAN);
-    add(&mut arm.displacement, DISPLACEMENT_NOISE);
+    add(&mut arm.displacement, displacement);
     add(&mut arm.cap_pressure, pressure);
     add(&mut arm.rod_pressure, pressure);
-    add(&mut arm.orifice_area, OPENING_NOISE);
-    add(&mut recording.pump_pressure, pressure);
+    add(&mut arm.orifice_area, opening);
+    if recording.pump_flow.iter().any(|flow| flow.is_finite()) {
+        add(&mut recording.pump_pressure, pressure);
+    }
     recording
 }
 

@@ -5,5 +5,6 @@ mod energy_flow;
 mod experiment;
 mod identification_errors;
 mod page;
+mod servo_bench;
 
 pub use page::{BLOCKS, Block, blocks_of, written};

@@ -1,6 +1,6 @@
 //! The blocks of the pages, between marks.
 
-use crate::{cross_validation, energy_flow, identification_errors};
+use crate::{cross_validation, energy_flow, identification_errors, servo_bench};
 
 /// A part of a page that is made by a function.
 pub struct Block {
@@ -8,22 +8,16 @@ pub struct Block {
     pub name: &'static str,
     /// Page under `docs/`.
     pub page: &'static str,
-    /// Whether it takes seconds, not minutes.
-    pub is_short: bool,
     make: fn() -> Result<String, String>,
 }
 
 /// All blocks.
-pub const BLOCKS: [Block; 4] = [
-    Block {
-        name: "condition-numbers",
-        page: "papers.md",
-        is_short: true,
-        make: identification_errors::condition_numbers,
-    },
-    Block { name: "identification-errors", page: "papers.md", is_short: false, make: identification_errors::errors },
-    Block { name: "cross-validation", page: "papers.md", is_short: false, make: cross_validation::cross_validation },
-    Block { name: "energy-of-the-paper", page: "energy.md", is_short: true, make: energy_flow::energy_flow },
+pub const BLOCKS: [Block; 5] = [
+    Block { name: "condition-numbers", page: "papers.md", make: identification_errors::condition_numbers },
+    Block { name: "identification-errors", page: "papers.md", make: identification_errors::errors },
+    Block { name: "cross-validation", page: "papers.md", make: cross_validation::cross_validation },
+    Block { name: "energy-of-the-paper", page: "energy.md", make: energy_flow::energy_flow },
+    Block { name: "table-one", page: "papers.md", make: servo_bench::table_one },
 ];
 
 /// The page with the block made anew.
