@@ -8,16 +8,24 @@ pub struct Block {
     pub name: &'static str,
     /// Page under `docs/`.
     pub page: &'static str,
+    /// Whether it takes minutes, not seconds.
+    pub is_long: bool,
     make: fn() -> Result<String, String>,
 }
 
 /// All blocks.
-pub const BLOCKS: [Block; 5] = [
-    Block { name: "condition-numbers", page: "papers.md", make: identification_errors::condition_numbers },
-    Block { name: "identification-errors", page: "papers.md", make: identification_errors::errors },
-    Block { name: "cross-validation", page: "papers.md", make: cross_validation::cross_validation },
-    Block { name: "energy-of-the-paper", page: "energy.md", make: energy_flow::energy_flow },
-    Block { name: "table-one", page: "papers.md", make: servo_bench::table_one },
+pub const BLOCKS: [Block; 6] = [
+    Block {
+        name: "condition-numbers",
+        page: "papers.md",
+        make: identification_errors::condition_numbers,
+        is_long: false,
+    },
+    Block { name: "identification-errors", page: "papers.md", make: identification_errors::errors, is_long: false },
+    Block { name: "cross-validation", page: "papers.md", make: cross_validation::cross_validation, is_long: false },
+    Block { name: "energy-of-the-paper", page: "energy.md", make: energy_flow::energy_flow, is_long: false },
+    Block { name: "table-one", page: "papers.md", make: servo_bench::table_one, is_long: false },
+    Block { name: "refinement", page: "papers.md", make: servo_bench::refinement, is_long: true },
 ];
 
 /// The page with the block made anew.

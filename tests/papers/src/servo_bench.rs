@@ -1,9 +1,11 @@
 //! \[B\] in simulation: trapezoids give a model, which predicts sines; dead zones have the sizes of \[B\].
 
 use excavator_identification::characterisation::characterise;
+use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::fit::{FitSettings, fit};
+use excavator_identification::refinement::{Additions, refine};
 use excavator_identification::regression::{WeakFormSettings, weak_form};
-use excavator_identification::validation::compare;
+use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::recording::Recording;
@@ -31,6 +33,9 @@ const HIDDEN: [(&str, &[f64]); 5] = [
     ("coulomb_friction", &[600.0]),
 ];
 
+/// Displacement before the trapezoids, m.
+const START: f64 = -0.1;
+
 /// Signals of Table I of \[B\], and the printed errors by amplitude.
 const SIGNALS: [&str; 4] = ["load.displacement", "load.velocity", "load.cap_pressure", "load.rod_pressure"];
 const TABLE_ONE: [(f64, [&str; 4]); 3] = [
@@ -45,12 +50,11 @@ fn plant() -> Result<Model, String> {
 }
 
 /// Amplitudes 0.25 to 1 in steps of 0.05 in both directions, ramps of 0.5 s (\[B\] IV-A). A plateau is as long as the stroke allows.
-fn trapezoids() -> Vec<Segment> {
+fn trapezoids(amplitudes: &[f64]) -> Vec<Segment> {
     let mut segments = Vec::new();
-    for step in 0..=15 {
-        let amplitude = 0.25 + 0.05 * f64::from(step);
-        for (sign, zone) in [(1.0, DEAD_ZONES[0]), (-1.0, DEAD_ZONES[1])] {
-            let plateau = (0.17 / (0.42 * (amplitude - zone).max(0.01)) - 0.3).clamp(0.35, 2.5);
+    for amplitude in amplitudes {
+        for (sign, zone, travel) in [(1.0, DEAD_ZONES[0], 0.17), (-1.0, DEAD_ZONES[1], 0.14)] {
+            let plateau = (travel / (0.42 * (amplitude - zone).max(0.01)) - 0.3).clamp(0.35, 2.5);
             segments.push(Segment::Trapezoid {
                 duration: 1.0 + plateau,
                 amplitude: sign * amplitude * FULL,
@@ -122,7 +126,8 @@ fn outcome(trapezoids: &Recording, sines: &[Recording; 3], seed: u64) -> Result<
 /// Table I beside the errors of the simulated bench, and what of the bench was found.
 pub fn table_one() -> Result<String, String> {
     let plant = plant()?;
-    let trapezoids = run(&plant, trapezoids(), -0.17)?;
+    let amplitudes: Vec<f64> = (0..=15).map(|step| 0.25 + 0.05 * f64::from(step)).collect();
+    let trapezoids = run(&plant, trapezoids(&amplitudes), START)?;
     let [one, two, three] = TABLE_ONE.map(|(amplitude, _)| run(&plant, sine(amplitude), 0.0));
     let sines = [one?, two?, three?];
     let all = SEEDS
@@ -159,7 +164,7 @@ pub fn table_one() -> Result<String, String> {
     let (low, high) = range(&trapezoids.cylinders[0].displacement);
     text += &format!(
         "\nThe {} trapezoids take {:.0} s; the piston stays between {low:+.2} and {high:+.2} m of its stroke of ± 0.25 m. At B = 0.27, it moves by {:.1} mm.\n",
-        2 * 16,
+        2 * amplitudes.len(),
         trapezoids.time.last().copied().unwrap_or(f64::NAN),
         {
             let (low, high) = range(&sines[0].cylinders[0].displacement);
@@ -167,4 +172,62 @@ pub fn table_one() -> Result<String, String> {
         },
     );
     Ok(text)
+}
+
+/// The search from the preliminary model, step by step, on four amplitudes.
+pub fn refinement() -> Result<String, String> {
+    let plant = plant()?;
+    let identification = noisy(&run(&plant, trapezoids(&[0.3, 0.5, 0.75, 1.0]), START)?, SEEDS[0]);
+    let sines = TABLE_ONE.iter().flat_map(|(amplitude, _)| sine(*amplitude)).collect();
+    let validation = noisy(&run(&plant, sines, 0.0)?, SEEDS[1]);
+    let preliminary = built_in("servo-bench").map_err(|error| error.to_string())?;
+    let settings = DiagnosisSettings::default();
+    let when = "2026-01-01T00:00:00Z";
+    let refined =
+        refine(&preliminary, &[&identification], &[&validation], &Additions::Auto, &settings, when, &|_, _| ())
+            .map_err(|error| error.to_string())?;
+    let mut text = String::from(
+        "| `excavator refine --auto`, NMSE on the sines | x | v | P1 | P2 | mean |\n|---|---|---|---|---|---|\n",
+    );
+    text += &row("preliminary, as given", &refined.given);
+    for step in &refined.steps {
+        let name = step.added.as_deref().map(|name| format!("+ {}", name.trim_end_matches("@load")));
+        text += &row(&name.unwrap_or("preliminary, identified".to_string()), &step.comparisons);
+    }
+    let added: Vec<&str> = refined
+        .steps
+        .iter()
+        .filter_map(|step| step.added.as_deref())
+        .map(|name| name.trim_end_matches("@load"))
+        .collect();
+    let names = |wanted: bool| {
+        let hidden = HIDDEN.iter().map(|(name, _)| *name);
+        hidden.filter(|name| added.contains(name) == wanted).map(|name| format!("`{name}`")).collect::<Vec<_>>()
+    };
+    let others: Vec<String> = added
+        .iter()
+        .filter(|name| HIDDEN.iter().all(|(hidden, _)| hidden != *name))
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join(", ") };
+    text += &format!(
+        "\nHidden and found: {}. Hidden and not found: {}. Found and not hidden: {}. The verdict is `{}`.\n",
+        list(names(true)),
+        list(names(false)),
+        list(others),
+        refined.verdict().name(),
+    );
+    Ok(text)
+}
+
+/// A row of the table: mean errors over the recordings.
+fn row(name: &str, comparisons: &[Comparison]) -> String {
+    let number = |value: f64| if value < 1e-2 { format!("{value:.1e}") } else { format!("{value:.3}") };
+    let signal = |name: &&str| {
+        let all = comparisons.iter().flat_map(|one| one.signals.iter().filter(|signal| signal.name == **name));
+        number(mean(&all.map(|signal| signal.error.normalised()).collect::<Vec<_>>()))
+    };
+    let cells: Vec<String> = SIGNALS.iter().map(signal).collect();
+    let all = mean(&comparisons.iter().map(Comparison::mean_error).collect::<Vec<_>>());
+    format!("| {name} | {} | {} |\n", cells.join(" | "), number(all))
 }

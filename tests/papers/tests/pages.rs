@@ -14,6 +14,12 @@ fn assert_current(block: &Block) {
 }
 
 #[test]
-fn every_block_is_what_the_command_gives() {
-    BLOCKS.iter().for_each(assert_current);
+fn short_blocks_are_what_the_command_gives() {
+    BLOCKS.iter().filter(|block| !block.is_long).for_each(assert_current);
+}
+
+#[test]
+#[ignore = "minutes; tests/run --long"]
+fn long_blocks_are_what_the_command_gives() {
+    BLOCKS.iter().filter(|block| block.is_long).for_each(assert_current);
 }
