@@ -7,4 +7,4 @@ mod identification_errors;
 mod page;
 mod servo_bench;
 
-pub use page::{BLOCKS, Block, blocks_of, written};
+pub use page::{BLOCKS, Block, written};

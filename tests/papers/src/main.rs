@@ -37,8 +37,10 @@ fn main() -> ExitCode {
 
 fn replaced(block: &excavator_papers::Block, docs: &Path, check: bool) -> Result<(), String> {
     let path = docs.join(block.page);
+    // A page may be edited while a long block is made, so it is read afterwards.
+    let text = block.text()?;
     let before = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let after = written(block, &before)?;
+    let after = written(block, &text, &before)?;
     match (check, before == after) {
         (_, true) => Ok(()),
         (true, false) => Err(format!("{} is not what the command gives: run it without --check", block.page)),

@@ -28,20 +28,27 @@ pub const BLOCKS: [Block; 6] = [
     Block { name: "refinement", page: "papers.md", make: servo_bench::refinement, is_long: true },
 ];
 
-/// The page with the block made anew.
-///
-/// # Errors
-/// A sentence if the page lacks the marks, or a simulation or fit fails.
-pub fn written(block: &Block, page: &str) -> Result<String, String> {
-    let (before, after) = blocks_of(block, page)?;
-    Ok(format!("{before}{}\n{after}", (block.make)()?.trim_end()))
+impl Block {
+    /// Its text.
+    ///
+    /// # Errors
+    /// A sentence if a simulation or fit fails.
+    pub fn text(&self) -> Result<String, String> {
+        (self.make)()
+    }
 }
 
-/// What stands before the text of a block, its mark included, and what stands after it.
+/// The page with this text in the block.
 ///
 /// # Errors
 /// A sentence if the page lacks the marks.
-pub fn blocks_of<'p>(block: &Block, page: &'p str) -> Result<(&'p str, &'p str), String> {
+pub fn written(block: &Block, text: &str, page: &str) -> Result<String, String> {
+    let (before, after) = around(block, page)?;
+    Ok(format!("{before}{}\n{after}", text.trim_end()))
+}
+
+/// What stands before the text of a block, its mark included, and what stands after it.
+fn around<'p>(block: &Block, page: &'p str) -> Result<(&'p str, &'p str), String> {
     let (start, end) = (
         format!("<!-- {}: cargo run --release -p excavator-papers -->\n", block.name),
         format!("<!-- end of {} -->", block.name),

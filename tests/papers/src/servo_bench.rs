@@ -34,7 +34,7 @@ const HIDDEN: [(&str, &[f64]); 5] = [
 ];
 
 /// Displacement before the trapezoids, m.
-const START: f64 = -0.1;
+const START: f64 = -0.13;
 
 /// Signals of Table I of \[B\], and the printed errors by amplitude.
 const SIGNALS: [&str; 4] = ["load.displacement", "load.velocity", "load.cap_pressure", "load.rod_pressure"];
