@@ -110,7 +110,7 @@ fn record(segments: Vec<Segment>, generator: &mut ChaCha8Rng) -> Recording {
     recording
 }
 
-/// A row of the table in `docs/papers.md`.
+/// A row of a table of errors.
 fn print_row(name: &str, comparisons: &[Comparison]) {
     let number = |value: f64| if value < 1e-2 { format!("{value:.1e}") } else { format!("{value:.3}") };
     let signal = |name: &str| {

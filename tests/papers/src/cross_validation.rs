@@ -92,9 +92,8 @@ pub fn cross_validation() -> Result<String, String> {
         all.last().copied().unwrap_or(f64::NAN) - all.first().copied().unwrap_or(f64::NAN)
     };
     text += &format!(
-        "\nLeast squares makes {least:.0} to {most:.0} N of the Coulomb friction, which is {:.0} N. Over 16 s, the piston moves by {:+.3} m at 0.5 Hz and by\n\
-         {:+.3} m at 1.0 Hz. At its largest speed of {:.0} mm/s, the hose\n\
-         loss takes {:.1} kN and viscous damping {:.1} kN.\n",
+        "\nLeast squares makes {least:.0} to {most:.0} N of the Coulomb friction, which is {:.0} N. Over 16 s, the piston moves by {:+.3} m at 0.5 Hz\n\
+         and by {:+.3} m at 1.0 Hz. At its largest speed of {:.0} mm/s, the hose loss takes {:.1} kN and viscous damping {:.1} kN.\n",
         machine.value_of("arm.coulomb_friction").unwrap_or(f64::NAN),
         drift(&slow),
         drift(&fast),

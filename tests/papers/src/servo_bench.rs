@@ -3,7 +3,7 @@
 use excavator_identification::characterisation::characterise;
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::fit::{FitSettings, fit};
-use excavator_identification::refinement::{Additions, refine};
+use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::regression::{WeakFormSettings, weak_form};
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
@@ -174,18 +174,13 @@ pub fn table_one() -> Result<String, String> {
     Ok(text)
 }
 
-/// The search from the preliminary model, step by step, on four amplitudes.
+/// The search from the preliminary model on four amplitudes: step by step for the first seed, and what it finds for all.
 pub fn refinement() -> Result<String, String> {
     let plant = plant()?;
-    let identification = noisy(&run(&plant, trapezoids(&[0.3, 0.5, 0.75, 1.0]), START)?, SEEDS[0]);
-    let sines = TABLE_ONE.iter().flat_map(|(amplitude, _)| sine(*amplitude)).collect();
-    let validation = noisy(&run(&plant, sines, 0.0)?, SEEDS[1]);
-    let preliminary = built_in("servo-bench").map_err(|error| error.to_string())?;
-    let settings = DiagnosisSettings::default();
-    let when = "2026-01-01T00:00:00Z";
-    let refined =
-        refine(&preliminary, &[&identification], &[&validation], &Additions::Auto, &settings, when, &|_, _| ())
-            .map_err(|error| error.to_string())?;
+    let trapezoids = run(&plant, trapezoids(&[0.3, 0.5, 0.75, 1.0]), START)?;
+    let sines = run(&plant, TABLE_ONE.iter().flat_map(|(amplitude, _)| sine(*amplitude)).collect(), 0.0)?;
+    let [first, others @ ..] = SEEDS;
+    let refined = refined(&trapezoids, &sines, first)?;
     let mut text = String::from(
         "| `excavator refine --auto`, NMSE on the sines | x | v | P1 | P2 | mean |\n|---|---|---|---|---|---|\n",
     );
@@ -194,30 +189,34 @@ pub fn refinement() -> Result<String, String> {
         let name = step.added.as_deref().map(|name| format!("+ {}", name.trim_end_matches("@load")));
         text += &row(&name.unwrap_or("preliminary, identified".to_string()), &step.comparisons);
     }
-    let added: Vec<&str> = refined
-        .steps
-        .iter()
-        .filter_map(|step| step.added.as_deref())
-        .map(|name| name.trim_end_matches("@load"))
-        .collect();
-    let names = |wanted: bool| {
-        let hidden = HIDDEN.iter().map(|(name, _)| *name);
-        hidden.filter(|name| added.contains(name) == wanted).map(|name| format!("`{name}`")).collect::<Vec<_>>()
-    };
-    let others: Vec<String> = added
-        .iter()
-        .filter(|name| HIDDEN.iter().all(|(hidden, _)| hidden != *name))
-        .map(|name| format!("`{name}`"))
-        .collect();
-    let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join(", ") };
-    text += &format!(
-        "\nHidden and found: {}. Hidden and not found: {}. Found and not hidden: {}. The verdict is `{}`.\n",
-        list(names(true)),
-        list(names(false)),
-        list(others),
-        refined.verdict().name(),
-    );
+    text += "\n| seed | hidden and found | hidden, not found | found, not hidden | verdict |\n|---|---|---|---|---|\n";
+    text += &outcome_row(first, &refined);
+    for seed in others {
+        text += &outcome_row(seed, &self::refined(&trapezoids, &sines, seed)?);
+    }
     Ok(text)
+}
+
+fn refined(trapezoids: &Recording, sines: &Recording, seed: u64) -> Result<Refinement, String> {
+    let preliminary = built_in("servo-bench").map_err(|error| error.to_string())?;
+    let (identification, validation) = (noisy(trapezoids, seed), noisy(sines, seed + 100));
+    let (settings, when) = (DiagnosisSettings::default(), "2026-01-01T00:00:00Z");
+    refine(&preliminary, &[&identification], &[&validation], &Additions::Auto, &settings, when, &|_, _| ())
+        .map_err(|error| error.to_string())
+}
+
+/// What one search found.
+fn outcome_row(seed: u64, refined: &Refinement) -> String {
+    let added = refined.steps.iter().filter_map(|step| step.added.as_deref());
+    let added: Vec<&str> = added.map(|name| name.trim_end_matches("@load")).collect();
+    let hidden = HIDDEN.map(|(name, _)| name);
+    let found = hidden.iter().filter(|name| added.contains(name)).count();
+    let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join(", ") };
+    let of = |names: &[&str], others: &[&str]| {
+        list(names.iter().filter(|name| !others.contains(name)).map(|name| format!("`{name}`")).collect())
+    };
+    let (missed, more) = (of(&hidden, &added), of(&added, &hidden));
+    format!("| {seed} | {found} of {} | {missed} | {more} | `{}` |\n", hidden.len(), refined.verdict().name())
 }
 
 /// A row of the table: mean errors over the recordings.
