@@ -1,6 +1,7 @@
 //! Energies of effects against the integral of their powers along the recorded path.
 
 use excavator_identification::energy::{EnergySettings, analyse};
+use excavator_identification::results::Energy;
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::energy::{Ledger, ledger};
@@ -80,4 +81,46 @@ fn each_is_the_integral_of_its_power() {
         }
         assert!(boiled < -0.1, "nothing boils: {boiled} J");
     }
+}
+
+/// What the pump gives while the valve is open towards one side, and towards the other, is all that it gives.
+#[test]
+fn powers_by_the_sign_of_the_opening_add_up() {
+    let model = built_in("zx30u-arm").unwrap();
+    let analysis = analyse(&model, &recorded(&model, 0.5, 0.27), EnergySettings::default()).unwrap();
+    let (whole, [both]) = (&analysis.totals, &analysis.by_opening[..]) else { panic!("one cylinder") };
+    let [positive, negative] = [&both.positive, &both.negative];
+    // The opening is exactly zero in the first sample alone.
+    let duration = positive.duration + negative.duration;
+    assert!((duration - whole.duration).abs() < 0.01, "{duration} s of {}", whole.duration);
+    let supplied = positive.cylinders[0].supplied + negative.cylinders[0].supplied;
+    let wanted = whole.cylinders[0].supplied;
+    assert!((supplied / wanted - 1.0).abs() < 1e-3, "{supplied} J of {wanted}");
+    // [A] Section 5.2: the pump gives little for u > 0; the sinking arm gives back more than that for u < 0.
+    let [up, down] = [positive, negative].map(|part| part.cylinders[0].supplied / part.duration);
+    println!("mean supply {up:.1} W for u > 0, {down:.1} W for u < 0");
+    assert!(up.abs() < 0.2 * down.abs() && down < -100.0, "{up} W, {down} W");
+}
+
+/// The thinned traces of the result keep the peaks, and every column has one value for each time.
+#[test]
+fn thinned_traces_keep_peaks() {
+    let model = built_in("zx30u-arm").unwrap();
+    let analysis = analyse(&model, &recorded(&model, 1.0, 0.27), EnergySettings::default()).unwrap();
+    let result = Energy::of(&model, &analysis);
+    let (trace, whole) = (&result.traces["arm"], &analysis.traces.cylinders[0]);
+    let count = trace.time.len();
+    assert!((300..600).contains(&count), "{count} samples");
+    assert_eq!([trace.supply.len(), trace.hamiltonian.len(), trace.numerical_dissipation.len()], [count; 3]);
+    assert!(trace.terms.values().all(|term| [term.analytical.len(), term.numerical.len()] == [count; 2]));
+    let peak = |values: &mut dyn Iterator<Item = f64>| values.filter(|value| value.is_finite()).fold(0.0, f64::max);
+    for (thinned, all) in [
+        (&trace.supply, &whole.supply.value),
+        (&trace.experimental_rate, &whole.experimental.value),
+        (&trace.dissipation, &whole.dissipation.value),
+    ] {
+        let kept = peak(&mut thinned.iter().flatten().copied());
+        assert_eq!(kept, peak(&mut all.iter().copied()));
+    }
+    assert_eq!(result.phase_criterion.unwrap().met, Some(true));
 }
