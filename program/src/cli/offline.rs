@@ -210,11 +210,11 @@ pub struct ModelCheckArguments {
 pub struct InfoArguments {
     /// Bag, or a table with a map.
     pub bag: PathBuf,
-    /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    /// Topic map (TOML), or `opera`; without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
-    /// Namespace of the machine, for a bag of our own topics that has several.
-    #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
+    /// Namespace of the machine, for a bag of our own topics, or of OPERA's, that has several.
+    #[arg(long, value_name = "NAMESPACE")]
     pub namespace: Option<String>,
     #[command(flatten)]
     pub result: ResultFile,
@@ -226,7 +226,7 @@ pub struct ImportArguments {
     /// one after the other.
     #[arg(required = true, value_name = "DATA")]
     pub data: Vec<PathBuf>,
-    /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    /// Topic map (TOML), or `opera`; without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
     /// Table that was recorded beside DATA: its columns are available to the map, at the times of DATA. Repeat it for several.

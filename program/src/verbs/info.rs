@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use comfy_table::Cell;
+use excavator_bags::can::is_frame_log;
 use excavator_bags::map::{Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, ColumnInfo, SignalsInfo, TableInfo, own_definitions};
@@ -29,14 +30,15 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
     let inputs = Inputs::recordings([path], arguments.map.as_deref());
     files::check(&[arguments.result.output()], &inputs, arguments.result.overwriting)?;
-    if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
+    if DataTable::is_table(path) && !is_frame_log(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
     let origin = Origin { map: arguments.map.as_deref(), namespace: arguments.namespace.as_deref() };
     // Two passes over the bag, one per thread.
     let (bag, signals) = std::thread::scope(|scope| {
         let signals = scope.spawn(|| read_signals(path, origin));
-        let bag = (!DataTable::is_table(path)).then(|| info_with(path, own_definitions())).transpose();
+        let is_bag = !DataTable::is_table(path) && !is_frame_log(path);
+        let bag = is_bag.then(|| info_with(path, own_definitions())).transpose();
         (bag, signals.join())
     });
     let bag = bag?;
@@ -46,7 +48,8 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
             (Some(bag), _) => show_bag(bag),
             (None, Ok((signals, _))) => {
                 let (path, samples) = (path.display(), signals.samples);
-                print(&format!("The table {path} has {samples} samples in {:.2} s.", signals.duration));
+                let kind = if is_frame_log(arguments.bag.as_path()) { "log of CAN frames" } else { "table" };
+                print(&format!("The {kind} {path} has {samples} samples in {:.2} s.", signals.duration));
             }
             (None, Err(_)) => (),
         }
