@@ -15,7 +15,7 @@ use super::error::MapError;
 use super::messages::Messages;
 use super::named::NamedColumn;
 use super::signal::{SignalKind, SignalName};
-use super::signal_source::SignalSource;
+use super::signal_source::{Resampling, SignalSource};
 use crate::can::{Database, FrameReader};
 use crate::{BagError, own_definitions};
 
@@ -156,6 +156,8 @@ fn document(chosen: &BTreeMap<Meaning, Found>, by_frames: bool) -> TopicMap {
                 message,
                 unit,
                 stamp,
+                // It comes more slowly than all else.
+                resample: (*meaning == Meaning::OilTemperature).then_some(Resampling::Hold),
                 ..SignalSource::new(signal)
             }),
             (None, Meaning::Pilot(axis, extends)) => {

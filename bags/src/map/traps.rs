@@ -24,6 +24,8 @@ const EACH_SIDE: f64 = 0.02;
 const NO_PRESSURE: f64 = 1e3;
 /// Deviation of a proportion, as a share of the smaller signal's spread, that is left to rounding.
 const ROUNDING: f64 = 0.01;
+/// Least range of a signal that may be in proportion to another one, as a multiple of the rounding of both.
+const LEAST_RANGE: f64 = 4.0;
 
 /// What is odd about the signals, one line each.
 pub(super) fn traps(all: &[Readings<'_>]) -> Vec<String> {
@@ -106,7 +108,11 @@ fn proportion(main: &[f64], pilot: &[f64]) -> Option<f64> {
     let steps = 0.5 * (step(pilot) + ratio.abs() * step(main));
     let spread = standard_deviation(pilot);
     let most = steps + ROUNDING * spread;
-    (spread > 2.0 * steps && pairs(main, pilot).all(|(main, pilot)| (pilot - ratio * main).abs() <= most)).then_some(ratio)
+    let (low, high) = pairs(main, pilot).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, pilot)| {
+        (low.min(pilot), high.max(pilot))
+    });
+    // Within its rounding, a signal that hardly moves is in proportion to any other.
+    (high - low > LEAST_RANGE * steps && pairs(main, pilot).all(|(main, pilot)| (pilot - ratio * main).abs() <= most)).then_some(ratio)
 }
 
 /// Step of a converter: the smallest difference of two values, if most values occur several times.

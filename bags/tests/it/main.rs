@@ -13,6 +13,7 @@ mod interop_foreign;
 mod map_text;
 mod mapped_bags;
 mod namespaces;
+mod opera;
 mod never_panics;
 mod other_peoples_bags;
 mod own_messages;
