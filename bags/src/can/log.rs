@@ -15,7 +15,8 @@ use socketcan::{CanAnyFrame, EmbeddedFrame, Frame as _};
 
 /// Type of the messages: `can_msgs/msg/Frame`, but with the data that CAN FD has.
 const FRAME_TYPE: &str = "can_msgs/msg/Frame";
-const SCHEMA: &str = "std_msgs/Header header\nuint32 id\nbool is_rtr\nbool is_extended\nbool is_error\nuint8 dlc\nuint8[] data";
+const SCHEMA: &str =
+    "std_msgs/Header header\nuint32 id\nbool is_rtr\nbool is_extended\nbool is_error\nuint8 dlc\nuint8[] data";
 
 #[derive(Serialize)]
 struct LoggedFrame {

@@ -8,6 +8,6 @@ mod senders;
 
 pub use database::{Database, Identifier, Place};
 pub(crate) use frame::{DataFrame, FrameReader};
-pub use log::is_frame_log;
 pub(crate) use log::FrameLog;
+pub use log::is_frame_log;
 pub use senders::{OtherSender, Senders};

@@ -13,8 +13,8 @@ use super::clock_source::Stamp;
 use super::conversion::Conversion;
 use super::error::MapError;
 use super::least_delays::LeastDelays;
-use super::messages::Messages;
 use super::message_times::{Auto, MessageTimes, StampReader, header_selector};
+use super::messages::Messages;
 use super::wanted::Wanted;
 use crate::BagError;
 use crate::can::{DataFrame, Database, FrameReader, Identifier, OtherSender, Place, Senders};
@@ -104,7 +104,16 @@ impl<'m> MappedTopic<'m> {
         let conversion = wanted.conversion(unit.as_deref())?;
         let stamp = StampReader::new(&wanted.from.stamp, self.auto);
         let channels = Channels::default();
-        self.fields.push(MappedField { wanted, conversion, stamp, at, samples: Vec::new(), channels, absent: 0, out_of_range: 0 });
+        self.fields.push(MappedField {
+            wanted,
+            conversion,
+            stamp,
+            at,
+            samples: Vec::new(),
+            channels,
+            absent: 0,
+            out_of_range: 0,
+        });
         Ok(())
     }
 

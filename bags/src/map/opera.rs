@@ -162,7 +162,8 @@ fn document(chosen: &BTreeMap<Meaning, Found>, by_frames: bool) -> TopicMap {
             }),
             (None, Meaning::Pilot(axis, extends)) => {
                 let unit = unit.or(Some("MPa".to_string()));
-                let column = NamedColumn { topic: Some(topic), field: Some(field), message, unit, stamp, ..Default::default() };
+                let column =
+                    NamedColumn { topic: Some(topic), field: Some(field), message, unit, stamp, ..Default::default() };
                 map.names.insert(Meaning::name(axis, *extends), column);
             }
             (None, _) => {}

@@ -117,8 +117,9 @@ pub(super) fn read_with(
         Some(map) => read_dated(path, map),
         None if is_frame_log(path) => Err(BagError::BadTable {
             path: path.to_path_buf(),
-            reason: "a log of CAN frames needs a map with a DBC file: give one with --map; --map opera reads frames of COM3"
-                .to_string(),
+            reason:
+                "a log of CAN frames needs a map with a DBC file: give one with --map; --map opera reads frames of COM3"
+                    .to_string(),
         }),
         None if Table::is_table(path) => Err(BagError::BadTable {
             path: path.to_path_buf(),

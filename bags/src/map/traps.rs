@@ -55,7 +55,8 @@ pub(super) fn traps(all: &[Readings<'_>]) -> Vec<String> {
     }
     for pilot in moving.iter().filter(|one| one.label.contains("pilot")) {
         let main = moving.iter().filter(|one| one.dimension == pilot.dimension && one.label.contains('.'));
-        if let Some((main, ratio)) = main.filter_map(|main| Some((main, proportion(main.values, pilot.values)?))).next() {
+        if let Some((main, ratio)) = main.filter_map(|main| Some((main, proportion(main.values, pilot.values)?))).next()
+        {
             lines.push(format!(
                 "{} is {ratio:.3} of {} all the time: it was computed from it, and tells nothing of the valve",
                 pilot.label, main.label
@@ -87,7 +88,8 @@ fn is_copy(first: &[f64], second: &[f64]) -> bool {
 }
 
 fn are_one_sided(cap: &[f64], rod: &[f64]) -> bool {
-    let count = |holds: &dyn Fn(f64, f64) -> bool| pairs(cap, rod).filter(|(cap, rod)| holds(*cap, *rod)).count() as f64;
+    let count =
+        |holds: &dyn Fn(f64, f64) -> bool| pairs(cap, rod).filter(|(cap, rod)| holds(*cap, *rod)).count() as f64;
     let all = count(&|_, _| true);
     all >= FEWEST as f64
         && count(&|cap, rod| cap.min(rod) < NO_PRESSURE) >= ONE_SIDED * all
@@ -108,11 +110,11 @@ fn proportion(main: &[f64], pilot: &[f64]) -> Option<f64> {
     let steps = 0.5 * (step(pilot) + ratio.abs() * step(main));
     let spread = standard_deviation(pilot);
     let most = steps + ROUNDING * spread;
-    let (low, high) = pairs(main, pilot).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, pilot)| {
-        (low.min(pilot), high.max(pilot))
-    });
+    let (low, high) = pairs(main, pilot)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, pilot)| (low.min(pilot), high.max(pilot)));
     // Within its rounding, a signal that hardly moves is in proportion to any other.
-    (high - low > LEAST_RANGE * steps && pairs(main, pilot).all(|(main, pilot)| (pilot - ratio * main).abs() <= most)).then_some(ratio)
+    (high - low > LEAST_RANGE * steps && pairs(main, pilot).all(|(main, pilot)| (pilot - ratio * main).abs() <= most))
+        .then_some(ratio)
 }
 
 /// Step of a converter: the smallest difference of two values, if most values occur several times.

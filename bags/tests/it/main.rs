@@ -13,8 +13,8 @@ mod interop_foreign;
 mod map_text;
 mod mapped_bags;
 mod namespaces;
-mod opera;
 mod never_panics;
+mod opera;
 mod other_peoples_bags;
 mod own_messages;
 #[cfg(feature = "tables")]

@@ -69,7 +69,8 @@ fn lists_of_names(layout: &Layout, number: usize, mut cursor: Cursor) -> Result<
             (Kind::Struct(inner), Count::One) if member.name == "layout" => {
                 let mut inside = cursor;
                 let members = layout.structure(*inner).map_or(&[][..], |structure| &structure.members);
-                if let Some(dim) = members.iter().position(|member| member.name == "dim" && member.count != Count::One) {
+                if let Some(dim) = members.iter().position(|member| member.name == "dim" && member.count != Count::One)
+                {
                     inside.skip_members(layout, *inner, dim)?;
                     let count = inside.count(members[dim].count)?;
                     let labels = texts_within(layout, &members[dim].kind, &["label"], count, inside)?;

@@ -126,9 +126,7 @@ impl Selector {
                 (None, _) => return Err(PathError::NeedsIndex { field: step.field.clone() }),
                 (Some(_), Count::One) => return Err(PathError::NotAnArray { field: step.field.clone() }),
                 (Some(Index::Number(number)), _) => ResolvedIndex::Number(*number),
-                (Some(Index::Named { key, value }), _) => {
-                    named(layout, own.unwrap_or_default(), found, key, value)?
-                },
+                (Some(Index::Named { key, value }), _) => named(layout, own.unwrap_or_default(), found, key, value)?,
             };
             kind = found.kind.clone();
             steps.push(ResolvedStep { member, index });
@@ -191,13 +189,7 @@ impl Selector {
 }
 
 /// How `[key=value]` finds its element in this type.
-fn named(
-    layout: &Layout,
-    own: usize,
-    array: &Member,
-    key: &str,
-    value: &str,
-) -> Result<ResolvedIndex, PathError> {
+fn named(layout: &Layout, own: usize, array: &Member, key: &str, value: &str) -> Result<ResolvedIndex, PathError> {
     if let Kind::Struct(number) = array.kind
         && let Some(way) = way_to_text(layout, number, key, false)
     {
