@@ -253,8 +253,26 @@ fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: 
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
+    use excavator_model::document::built_in;
+
     use super::*;
+
+    #[test]
+    fn angles_become_displacements_and_count_once() {
+        let machine = built_in("zx30u").unwrap().machine;
+        let mut recording = Recording::unmeasured("bag", vec![0.0, 0.5], &["boom", "arm"]);
+        let linkage = machine.cylinders[0].linkage;
+        recording.cylinders[0].joint_angle = vec![linkage.joint(-0.1), linkage.joint(0.2)];
+        recording.cylinders[1].joint_angle = vec![4.0, 4.1];
+        recording.cylinders[1].displacement = vec![0.01, 0.02];
+        angles_as_displacements(&mut recording, &machine);
+        let [boom, arm] = &recording.cylinders[..] else { unreachable!() };
+        assert!((boom.displacement[0] + 0.1).abs() < 1e-12 && (boom.displacement[1] - 0.2).abs() < 1e-12);
+        assert!(boom.joint_angle.iter().all(|angle| angle.is_nan()));
+        assert_eq!((&arm.joint_angle[..], &arm.displacement[..]), (&[4.0, 4.1][..], &[0.01, 0.02][..]));
+    }
 
     #[test]
     fn blocks_follow_each_other() {

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use comfy_table::Cell;
 use excavator_bags::can::is_frame_log;
-use excavator_bags::map::{Origin, TopicMap, read_signals};
+use excavator_bags::map::{Dimension, Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
-use excavator_bags::{BagError, ColumnInfo, SignalsInfo, TableInfo, own_definitions};
+use excavator_bags::{BagError, ColumnInfo, MappedUnit, SignalsInfo, TableInfo, own_definitions};
 use excavator_model::display::PressureUnit;
 use excavator_model::document::{BUILT_IN, built_in};
 use excavator_study::numbers::number;
@@ -55,7 +55,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         }
         match &signals {
             Ok((signals, report)) => {
-                show_signals(signals);
+                show_signals(signals, &report.mapped);
                 // Damage belongs to the bag, and has been reported already.
                 for note in report.notes.iter().chain(bag.is_none().then(|| report.problems()).iter().flatten()) {
                     print(&format!("note: {note}"));
@@ -242,11 +242,11 @@ fn next(arguments: &InfoArguments, signals: &SignalsInfo) -> NextStep {
     }
 }
 
-fn show_signals(signals: &SignalsInfo) {
+fn show_signals(signals: &SignalsInfo, mapped: &[MappedUnit]) {
     print(&format!("signals: {} samples in {:.2} s", signals.samples, signals.duration));
     let mut rows = table(&["signal", "from", "to", "unit", "not measured"]);
     for signal in &signals.measured {
-        let (factor, unit) = display_unit(&signal.name);
+        let (factor, unit) = display_unit(&signal.name, mapped);
         rows.add_row([
             Cell::new(&signal.name),
             right(number(factor * signal.least)),
@@ -266,8 +266,17 @@ fn show_signals(signals: &SignalsInfo) {
     }
 }
 
-/// Factor from SI, and the unit in which such a signal is displayed.
-fn display_unit(name: &str) -> (f64, &'static str) {
+/// Factor from SI, and the unit in which such a signal is displayed. The input of a valve has the unit that the map gives it.
+fn display_unit(name: &str, mapped: &[MappedUnit]) -> (f64, &'static str) {
+    let pressure = (PressureUnit::shown().factor(), PressureUnit::shown().symbol());
+    if name.ends_with(".orifice_area") || name.ends_with(".orifice_command") {
+        let given = mapped.iter().find(|mapped| mapped.signal.to_string() == name).map(|mapped| mapped.dimension);
+        match given {
+            None | Some(Dimension::Area) => {}
+            Some(Dimension::Pressure) => return pressure,
+            Some(other) => return (1.0, other.si_unit()),
+        }
+    }
     match name.rsplit('.').next().unwrap_or_default() {
         "displacement" => (1e3, "mm"),
         "velocity" => (1e3, "mm/s"),
@@ -276,7 +285,7 @@ fn display_unit(name: &str) -> (f64, &'static str) {
         "rod_force" => (1.0, "N"),
         "pump_flow" => (60_000.0, "l/min"),
         "oil_temperature" => (1.0, "degC"),
-        _ => (PressureUnit::shown().factor(), PressureUnit::shown().symbol()),
+        _ => pressure,
     }
 }
 
