@@ -129,10 +129,9 @@ fn step(values: &[f64]) -> f64 {
     sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min)
 }
 
-/// A temperature may well be constant; an axis that is not used has pilots at zero and an angle that stays.
+/// Only chambers are never at a constant pressure while the machine moves: an open tank is, and so are the pilots of an idle axis.
 fn is_placeholder(one: &Readings<'_>) -> bool {
-    one.dimension == Some(Dimension::Pressure)
-        && !one.label.contains("pilot")
+    [".cap_pressure", ".rod_pressure"].iter().any(|end| one.label.ends_with(end))
         && one.values.iter().filter(|value| value.is_finite()).count() >= FEWEST
         && !moves(one.values)
 }
