@@ -280,11 +280,11 @@ impl Look {
     }
 
     fn meaning(&self, path: &FieldPath) -> Option<Meaning> {
-        let names = path.steps().iter().filter_map(|step| match &step.index {
+        let mut names = path.steps().iter().rev().filter_map(|step| match &step.index {
             Some(Index::Named { value, .. }) => Some((step.field.as_str(), value)),
             _ => None,
         });
-        let (field, name) = names.last()?;
+        let (field, name) = names.next()?;
         let meaning = Meaning::of(name)?;
         let is_value = match meaning {
             Meaning::Joint(_) => field == "position",
