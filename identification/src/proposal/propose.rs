@@ -18,7 +18,7 @@ use super::simplest::simplest_first;
 use super::survey::Survey;
 use crate::decision::{Kind, Policy, Reason, Verdict};
 use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
-use crate::search::{Addition, Effort, Pool, Trial, search, try_laws};
+use crate::search::{Addition, Effort, Pool, Trial, search, try_each_alone, try_laws};
 
 /// Rounds in which laws are added to the best hypothesis so far. Recordings of one machine can hardly separate two
 /// unknown laws, let alone more.
@@ -112,6 +112,11 @@ impl Trials<'_> {
                 try_laws(pool, base, laws, self.effort, self.policy, &progress);
             }
             self.bounded(pool);
+            if round > 0 {
+                // A law that was found beside another may explain everything by itself.
+                (self.progress)("each law alone", share(0.9));
+                try_each_alone(pool, self.effort, self.policy, &progress);
+            }
             let verdict = pool.verdict(self.policy);
             let ratio = |number: usize| verdict.standings[number].log_error_ratio;
             let is_promising = verdict.best != 0 && ratio(verdict.best) < LARGEST_REST * ratio(0);
@@ -137,7 +142,9 @@ impl Trials<'_> {
     fn of_the_curve(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
         let model = &pool.given().fit.model;
         let Some(left) = unexplained(model, self.identification, self.policy)? else { return Ok(()) };
-        let Some(law) = table_law(&left).and_then(|text| Law::read(&text).ok()) else { return Ok(()) };
+        let taken = names_taken(pool);
+        let named = |text: FormulaText| FormulaText { name: free_name(&text.name, &taken), ..text };
+        let Some(law) = table_law(&left).and_then(|text| Law::read(&named(text)).ok()) else { return Ok(()) };
         let physics: AnyEffect = Arc::new(law);
         let place = left.equation.split_once('.').map_or("", |(place, _)| place);
         let sites = model.free_sites(&physics).into_iter().filter(|&site| site_name(&model.machine, site) == place);
@@ -157,10 +164,7 @@ fn terms_of(trial: &Trial) -> usize {
 
 /// The laws of a shortlist as effects with unique names.
 fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
-    let mut names: Vec<String> =
-        pool.given().fit.model.catalogue.iter().map(|effect| effect.card().name.to_string()).collect();
-    let of_trials = pool.trials.iter().flat_map(|trial| &trial.additions);
-    names.extend(of_trials.map(|addition| addition.physics.card().name.to_string()));
+    let mut names = names_taken(pool);
     let mut laws = Vec::new();
     for candidate in listed {
         let Some(text) = law_text(&candidate.terms, SUMMARY) else { continue };
@@ -171,6 +175,13 @@ fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
         }
     }
     laws
+}
+
+/// Names of all effects of the catalogue and of all laws that were tried.
+fn names_taken(pool: &Pool<'_>) -> Vec<String> {
+    let of_catalogue = pool.given().fit.model.catalogue.iter().map(|effect| effect.card().name.to_string());
+    let of_trials = pool.trials.iter().flat_map(|trial| &trial.additions);
+    of_catalogue.chain(of_trials.map(|addition| addition.physics.card().name.to_string())).collect()
 }
 
 /// The name, with a number if it is taken.

@@ -47,7 +47,7 @@ pub fn next(model: &ModelChoice, recordings: &Recordings, saved: Option<&Path>, 
     let same = |why: &str, verb: &str| NextStep::new(why, verb).same_model(model).recordings(recordings);
     match (diagnosis.verdict.kind, saved) {
         (Kind::Unexplained, _) => {
-            same("look for a law of the missing physics", "propose").path("-o", Path::new("laws.toml"))
+            same("look for a law of the missing physics", "propose").new_file("-o", "laws.toml")
         }
         (Kind::Adequate, _) => {
             let step = NextStep::new("see where the energy goes", "energy").same_model(model);
@@ -56,9 +56,9 @@ pub fn next(model: &ModelChoice, recordings: &Recordings, saved: Option<&Path>, 
         }
         (Kind::MissingEffect, Some(saved)) => NextStep::new("add it to the model", "refine")
             .path("--diagnosis", saved)
-            .path("-o", Path::new("refined.toml")),
+            .new_file("-o", "refined.toml"),
         (Kind::MissingEffect, None) => {
-            same("add it to the model", "refine").word("--auto").path("-o", Path::new("refined.toml"))
+            same("add it to the model", "refine").word("--auto").new_file("-o", "refined.toml")
         }
     }
 }
