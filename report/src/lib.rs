@@ -5,6 +5,8 @@
 //! which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
 
 mod assets;
+mod change_page;
+mod change_text;
 mod characterisation_page;
 mod characterisation_plots;
 mod comparison_page;
@@ -45,6 +47,8 @@ mod words;
 mod tests;
 
 pub use assets::{KINEMATICS, plotting};
+pub use change_page::change_page;
+pub use change_text::{change_sentence, relative_change, spoken_parameter, workshop_value};
 pub use characterisation_page::{characterisation_page, leakage_unit};
 pub use comparison_page::{Beside, comparison_page};
 pub use comparison_text::{comparison_sentence, others_sentence};

@@ -8,6 +8,7 @@
 //! Programs that read results must let pass what they do not know: fields may be added.
 
 mod candidate;
+mod change;
 mod characterisation;
 mod comparison;
 mod determination;
@@ -34,6 +35,7 @@ mod unexplained;
 mod valve_leakage;
 
 pub use candidate::{Bootstrap, Candidate};
+pub use change::{Change, ChangedParameter};
 pub use characterisation::{Characterisation, CylinderCharacterisation};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
 pub use determination::Determination;

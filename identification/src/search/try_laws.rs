@@ -38,9 +38,7 @@ pub(crate) fn try_each_alone(
         .filter(|&number| pool.trials[number].additions.len() > 1 && verdict.standings[number].improvement > 0.0)
         .filter(|&number| !pool.was_done(Move::Prune, number))
         .collect();
-    several.sort_by(|&a, &b| {
-        verdict.standings[a].log_error_ratio.total_cmp(&verdict.standings[b].log_error_ratio)
-    });
+    several.sort_by(|&a, &b| verdict.standings[a].log_error_ratio.total_cmp(&verdict.standings[b].log_error_ratio));
     several.truncate(MOST_ALONE);
     for number in several {
         stepwise.take(Move::Prune, number, pool);

@@ -65,7 +65,8 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
     let name = |proposal: &Proposal| format!("{}@{}", proposal.text.name, proposal.place);
     let with_laws =
         |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).path("--catalogue", file);
-    let why = if first.beside.is_empty() { "add the first law" } else { "add the first law and what it needs beside it" };
+    let why =
+        if first.beside.is_empty() { "add the first law" } else { "add the first law and what it needs beside it" };
     // Effects that the hypothesis of the law has besides are added first, as in the fit of its numbers.
     let step = first.beside.iter().fold(with_laws(why, "refine").word("--add"), |step, other| step.word(other));
     print_next(&step.word(name(first)).recordings(&arguments.recordings).new_file("-o", "refined.toml"));

@@ -1,0 +1,7 @@
+//! What changed in a machine: between two sets of recordings, or from the begin to the end of recordings.
+
+mod changes;
+mod drift;
+
+pub use changes::{Changes, ParameterChange, changes};
+pub use drift::drift;
