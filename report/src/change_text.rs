@@ -39,12 +39,17 @@ pub fn workshop_value(one: &ParameterChange, side: usize) -> String {
 
 /// Change relative to the value before: `+35 %`; the factor, if it is more than threefold.
 pub fn relative_change(one: &ParameterChange) -> String {
-    let ratio = one.values[1] / one.values[0];
+    change_of(one.values)
+}
+
+/// Change from one value to another, relative to the first.
+pub(super) fn change_of([before, after]: [f64; 2]) -> String {
+    let ratio = after / before;
     if ratio.is_finite() && ratio > 3.0 {
         return format!("{ratio:.1} times as much");
     }
-    let sign = if one.difference() < 0.0 { "−" } else { "+" };
-    format!("{sign}{}", percent(one.relative().abs()))
+    let sign = if after < before { "−" } else { "+" };
+    format!("{sign}{}", percent(((after - before) / before).abs()))
 }
 
 /// The place and the meaning of a parameter: "leakage coefficient at the arm".

@@ -62,11 +62,6 @@ impl ParameterChange {
         1.96 * self.difference().abs() / self.margin_95()
     }
 
-    /// Difference relative to the value before.
-    pub fn relative(&self) -> f64 {
-        self.difference() / self.values[0].abs()
-    }
-
     fn of(models: [&Model; 2], index: usize, name: String) -> Option<Self> {
         let [before, after] = models.map(|model| model.parameters().nth(index).map(|(_, parameter)| parameter));
         let (before, after) = (before?, after?);
@@ -107,11 +102,11 @@ pub fn changes(
     let model = with_nuisances(model, &all);
     // Both fits start from one that saw everything, so that they do not end in different minima.
     let common = fit_given(&model, &all, settings)?;
-    fitted_apart(&common, before, after, settings)
+    between(&common, before, after, settings)
 }
 
 /// Fits of two sets of recordings that start from the fit of both together.
-pub(super) fn fitted_apart(
+pub(crate) fn between(
     common: &Fit,
     before: &[&Recording],
     after: &[&Recording],

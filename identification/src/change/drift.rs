@@ -2,7 +2,7 @@
 
 use excavator_model::recording::Recording;
 
-use super::changes::{Changes, fitted_apart};
+use super::changes::{Changes, between};
 use crate::fit::{Fit, FitError, FitSettings};
 
 /// Compares the first halves of `recordings` with their second halves, from a fit of the same model to some of them.
@@ -18,5 +18,5 @@ pub fn drift(fitted: &Fit, recordings: &[&Recording], settings: &FitSettings) ->
         recordings.iter().map(part).collect()
     };
     let (begin, end) = (half(0.0, 0.5), half(0.5, 1.0));
-    fitted_apart(fitted, &begin.iter().collect::<Vec<_>>(), &end.iter().collect::<Vec<_>>(), settings)
+    between(fitted, &begin.iter().collect::<Vec<_>>(), &end.iter().collect::<Vec<_>>(), settings)
 }

@@ -3,5 +3,6 @@
 mod changes;
 mod drift;
 
+pub(crate) use changes::between;
 pub use changes::{Changes, ParameterChange, changes};
 pub use drift::drift;

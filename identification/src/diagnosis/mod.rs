@@ -1,6 +1,7 @@
 //! Finds the missing physical effect: a search, the verdict on its scores, and where the model fails.
 
 mod candidates;
+mod confirmed;
 mod contribution;
 mod diagnose;
 mod named;
@@ -11,6 +12,7 @@ mod residual_points;
 
 pub use candidates::{Candidate, Part};
 pub use contribution::{Contribution, ContributionBin, Drawn, contribution};
+pub(crate) use confirmed::confirmed;
 pub(crate) use diagnose::diagnosis_of;
 pub use diagnose::{Diagnosis, DiagnosisError, DiagnosisSettings, diagnose};
 pub use named::NamedVerdict;

@@ -17,7 +17,7 @@ use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
 use super::survey::Survey;
 use crate::decision::{Kind, Policy, Reason, Verdict};
-use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
+use crate::diagnosis::{DiagnosisError, DiagnosisSettings, confirmed, unexplained};
 use crate::search::{Addition, Effort, Pool, Trial, search, try_each_alone, try_laws};
 
 /// Rounds in which laws are added to the best hypothesis so far. Recordings of one machine can hardly separate two
@@ -43,7 +43,7 @@ pub fn propose(
     let DiagnosisSettings { effort, policy } = settings;
     let half = |what: &str, done: f64| progress(what, 0.5 * done);
     let mut pool = search(model, identification, validation, effort, policy, &half)?;
-    let verdict = pool.verdict(policy);
+    let verdict = confirmed(&pool, pool.verdict(policy), settings);
     let mut survey = Survey::default();
     let kind = match verdict.kind {
         Kind::Adequate => ProposalVerdict::Adequate,
@@ -62,7 +62,14 @@ pub fn propose(
         let situations = situations_of(trial, identification);
         laws_dissipate(trial, &situations) && !reverses_an_opening(trial, &situations)
     };
-    let verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
+    let differing = verdict.reasons.into_iter().find(|reason| {
+        matches!(reason, Reason::ParametersDrift { .. } | Reason::MachineDiffers { .. })
+    });
+    let mut verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
+    if kind == ProposalVerdict::NoLaw && let Some(reason) = differing {
+        verdict.kind = Kind::Unexplained;
+        verdict.reasons.insert(0, reason);
+    }
     proposals(kind, pool, verdict, settings, survey, identification, validation)
 }
 
