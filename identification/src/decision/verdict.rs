@@ -167,7 +167,9 @@ impl Verdict {
     /// reason of the verdict.
     pub fn differing(&self) -> Option<&[Differing]> {
         self.reasons.iter().find_map(|reason| match reason {
-            Reason::ParametersDrift { parameters } | Reason::MachineDiffers { parameters } => Some(parameters.as_slice()),
+            Reason::ParametersDrift { parameters } | Reason::MachineDiffers { parameters } => {
+                Some(parameters.as_slice())
+            }
             _ => None,
         })
     }

@@ -11,8 +11,8 @@ mod residual_map;
 mod residual_points;
 
 pub use candidates::{Candidate, Part};
-pub use contribution::{Contribution, ContributionBin, Drawn, contribution};
 pub(crate) use confirmed::confirmed;
+pub use contribution::{Contribution, ContributionBin, Drawn, contribution};
 pub(crate) use diagnose::diagnosis_of;
 pub use diagnose::{Diagnosis, DiagnosisError, DiagnosisSettings, diagnose};
 pub use named::NamedVerdict;

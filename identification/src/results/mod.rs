@@ -15,6 +15,7 @@ mod determination;
 mod diagnosis;
 mod energies;
 mod energy;
+mod energy_budget;
 mod estimate;
 mod friction;
 mod gain;
@@ -44,6 +45,7 @@ pub use diagnosis::{
 };
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
 pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PumpLine, ValveSection};
+pub use energy_budget::{EnergyBudget, EnergyBudgetLine};
 pub use estimate::{Estimate, Outcome, Refused};
 pub use friction::{Friction, FrictionTerm};
 pub use gain::{DeadZone, Gain, GainPoint, Polynomial};
