@@ -40,8 +40,8 @@ impl Block {
 }
 
 /// The measured states and inputs of a block at its entries. Positions and pressures come from parabolas through their samples,
-/// narrower ones where a pressure has a corner: a chamber that starts to boil, a valve that closes. Valves come from the estimate that also drives simulations. Entries are skipped if their windows are cut off by the ends or contain
-/// an unmeasured sample.
+/// narrower ones where a chamber starts to boil. Valves come from the estimate that also drives simulations. Entries are skipped if
+/// their windows are cut off by the ends or contain an unmeasured sample.
 pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySettings) -> Result<Entries, SignalError> {
     let model = system.model();
     let layout = system.layout();
@@ -70,10 +70,10 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
     let mut entries = Entries::new(system, signals);
     let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
     let pump_noise = noise_level(&recording.pump_pressure);
-    let (mut motion, mut pressure) = (Parabola::default(), Parabolas::default());
+    let (mut motion, mut parabolas) = (Parabola::default(), Parabolas::default());
     for sample in block.entries() {
         if !motion.set(&recording.time, sample, settings.motion_half_width)
-            || !pressure.set(&recording.time, sample, settings.half_width)
+            || !parabolas.set(&recording.time, sample, settings.half_width)
         {
             continue;
         }
@@ -81,19 +81,19 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
         let known = |number: usize| {
             let (displacement, measured, [cap_noise, rod_noise]) = &sources[number];
             let velocity = match measured.velocity[sample] {
-                known if known.is_finite() => pressure.widest(&measured.velocity),
+                known if known.is_finite() => parabolas.widest(&measured.velocity),
                 _ => motion.slope(displacement),
             };
             KnownCylinder {
                 joint: model.machine.cylinders[number].linkage.joint(motion.value(displacement)),
                 velocity,
                 pressures: [
-                    pressure.value(&measured.cap_pressure, *cap_noise),
-                    pressure.value(&measured.rod_pressure, *rod_noise),
+                    parabolas.pressure(&measured.cap_pressure, *cap_noise),
+                    parabolas.pressure(&measured.rod_pressure, *rod_noise),
                 ],
             }
         };
-        let pump_pressure = pressure.value(&recording.pump_pressure, pump_noise);
+        let pump_pressure = parabolas.pressure(&recording.pump_pressure, pump_noise);
         system.set_measured(known, pump_pressure, &mut state);
         // If it is not measured, the machine's constant is already set.
         if matches!(model.machine.supply, Supply::PressureSource(_)) && pump_pressure.is_finite() {

@@ -26,7 +26,10 @@ const SAME_PLACE: f64 = 1e-9;
 /// thousand windows of eleven samples.
 const LARGEST_MISFIT: f64 = 3.3;
 
-/// Parabolas of several widths, for signals with corners.
+/// Gauge pressure below which a chamber boils or is refilled from the tank, Pa: that of the atmosphere.
+const REFILLED: f64 = 0.0;
+
+/// Parabolas of several widths, for pressures with corners.
 #[derive(Debug, Default)]
 pub(super) struct Parabolas {
     /// From the widest to the narrowest; those with too few samples are absent.
@@ -55,11 +58,14 @@ impl Parabolas {
         self.widths.first().map_or(f64::NAN, |parabola| parabola.value(signal))
     }
 
-    /// Value of a signal with this noise, by the widest parabola that follows it; the sample itself where none does. `NaN` if a
-    /// sample of the widest window is.
-    pub fn value(&self, signal: &[f64], noise: f64) -> f64 {
-        if self.widest(signal).is_nan() {
-            return f64::NAN;
+    /// Pressure (gauge, Pa) at the centre, of a signal with this noise. Where the chamber stays filled, by the widest parabola;
+    /// where it boils or is refilled from the tank, by the widest one that follows the signal, or the sample itself where none
+    /// does. `NaN` if a sample of the widest window is.
+    pub fn pressure(&self, signal: &[f64], noise: f64) -> f64 {
+        let widest = self.widest(signal);
+        let boils = self.widths.first().is_some_and(|parabola| parabola.lowest(signal) < REFILLED);
+        if widest.is_nan() || !boils {
+            return widest;
         }
         let mut usable = self.widths.iter().filter(|parabola| !parabola.value.is_empty());
         usable
@@ -148,6 +154,11 @@ impl Parabola {
         let error = |(place, sample): (&f64, &f64)| sample - origin - value - slope * place - bend * place * place;
         let squares: f64 = self.places.iter().zip(samples).map(|both| error(both).powi(2)).sum();
         squares <= LARGEST_MISFIT * noise * noise * (samples.len() as f64 - 3.0)
+    }
+
+    /// Lowest sample of a signal in the window.
+    fn lowest(&self, signal: &[f64]) -> f64 {
+        signal[self.first..self.first + self.places.len()].iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Slope of a signal.
