@@ -8,12 +8,14 @@
 //! Programs that read results must let pass what they do not know: fields may be added.
 
 mod candidate;
+mod change;
 mod characterisation;
 mod comparison;
 mod determination;
 mod diagnosis;
 mod energies;
 mod energy;
+mod energy_budget;
 mod estimate;
 mod friction;
 mod gain;
@@ -34,6 +36,7 @@ mod unexplained;
 mod valve_leakage;
 
 pub use candidate::{Bootstrap, Candidate};
+pub use change::{Change, ChangedParameter};
 pub use characterisation::{Characterisation, CylinderCharacterisation};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
 pub use determination::Determination;
@@ -42,6 +45,7 @@ pub use diagnosis::{
 };
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
 pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PumpLine, ValveSection};
+pub use energy_budget::{EnergyBudget, EnergyBudgetLine};
 pub use estimate::{Estimate, Outcome, Refused};
 pub use friction::{Friction, FrictionTerm};
 pub use gain::{DeadZone, Gain, GainPoint, Polynomial};

@@ -144,6 +144,27 @@ pub struct CharacteriseArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct ChangedArguments {
+    #[command(flatten)]
+    pub model: ModelChoice,
+    /// Recordings before; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub before: Vec<PathBuf>,
+    /// Recordings after.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub after: Vec<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    #[command(flatten)]
+    pub extent: Extent,
+    /// Write a page with what changed and what did not.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub result: ResultFile,
+}
+
+#[derive(Debug, Args)]
 pub struct EnergyArguments {
     #[command(flatten)]
     pub model: ModelChoice,

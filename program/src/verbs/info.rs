@@ -127,7 +127,7 @@ fn is_foreign(error: &BagError) -> bool {
 /// The next command for foreign data, whose signals are unknown.
 fn guess(data: &Path) -> NextStep {
     let step = NextStep::new("let the program propose a map", "import").word("--guess");
-    step.word(data.display().to_string()).path("-o", Path::new("map.toml"))
+    step.word(data.display().to_string()).new_file("-o", "map.toml")
 }
 
 fn to_json(bag: Option<&BagInfo>, signals: &Result<&SignalsInfo, &BagError>) -> Result<Value, VerbError> {
@@ -238,7 +238,7 @@ fn next(arguments: &InfoArguments, signals: &SignalsInfo) -> NextStep {
             let step = step.path("--bag", &arguments.bag);
             arguments.map.iter().fold(step, |step, map| step.path("--map", map))
         }
-        None => NextStep::new("describe the machine", "model").word("new").path("-o", Path::new("machine.toml")),
+        None => NextStep::new("describe the machine", "model").word("new").new_file("-o", "machine.toml"),
     }
 }
 
