@@ -4,6 +4,7 @@
 //! Data flows one way: recording -> regression -> model -> simulation -> hypotheses -> scores -> verdict ->
 //! refinement. This crate reads no files and does not depend on ROS; `excavator-report` writes the pages with its results.
 
+pub mod change;
 pub mod characterisation;
 pub mod checks;
 pub mod decision;

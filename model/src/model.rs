@@ -289,6 +289,11 @@ impl Model {
         self.parameters().zip(&names).map(unique).collect()
     }
 
+    /// Whether an effect depends on the oil temperature, so that recordings must have it.
+    pub fn reads_temperature(&self) -> bool {
+        self.effects.iter().any(|effect| effect.physics.reads_temperature())
+    }
+
     /// Indices, in the order of [`Model::parameters`], of the parameters that identification may change.
     pub fn unknown_parameters(&self) -> Vec<usize> {
         self.parameters().enumerate().filter(|(_, (_, parameter))| !parameter.known).map(|(index, _)| index).collect()

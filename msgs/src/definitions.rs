@@ -7,7 +7,7 @@ pub const SEPARATOR: &str = "===================================================
 
 /// All known definitions: name as `package/Type`, text of the `.msg` file. Definitions of other packages are for
 /// recordings of their topics, with the fields and constants of ROS 2 Jazzy.
-const TEXTS: [(&str, &str); 42] = [
+const TEXTS: [(&str, &str); 46] = [
     ("excavator_msgs/ArmState", include_str!("../msg/ArmState.msg")),
     ("excavator_msgs/CylinderEnergy", include_str!("../msg/CylinderEnergy.msg")),
     ("excavator_msgs/CylinderState", include_str!("../msg/CylinderState.msg")),
@@ -16,6 +16,7 @@ const TEXTS: [(&str, &str); 42] = [
     ("excavator_msgs/OrificeCommand", include_str!("../msg/OrificeCommand.msg")),
     ("builtin_interfaces/Duration", include_str!("../common_interfaces/builtin_interfaces/Duration.msg")),
     ("builtin_interfaces/Time", include_str!("../common_interfaces/builtin_interfaces/Time.msg")),
+    ("com3_msgs/FluidPressureArray", include_str!("../common_interfaces/com3_msgs/FluidPressureArray.msg")),
     ("diagnostic_msgs/DiagnosticArray", include_str!("../common_interfaces/diagnostic_msgs/DiagnosticArray.msg")),
     ("diagnostic_msgs/DiagnosticStatus", include_str!("../common_interfaces/diagnostic_msgs/DiagnosticStatus.msg")),
     ("diagnostic_msgs/KeyValue", include_str!("../common_interfaces/diagnostic_msgs/KeyValue.msg")),
@@ -43,9 +44,12 @@ const TEXTS: [(&str, &str); 42] = [
     ("std_msgs/Bool", include_str!("../common_interfaces/std_msgs/Bool.msg")),
     ("std_msgs/Float32", include_str!("../common_interfaces/std_msgs/Float32.msg")),
     ("std_msgs/Float64", include_str!("../common_interfaces/std_msgs/Float64.msg")),
+    ("std_msgs/Float64MultiArray", include_str!("../common_interfaces/std_msgs/Float64MultiArray.msg")),
     ("std_msgs/Header", include_str!("../common_interfaces/std_msgs/Header.msg")),
     ("std_msgs/Int32", include_str!("../common_interfaces/std_msgs/Int32.msg")),
     ("std_msgs/Int64", include_str!("../common_interfaces/std_msgs/Int64.msg")),
+    ("std_msgs/MultiArrayDimension", include_str!("../common_interfaces/std_msgs/MultiArrayDimension.msg")),
+    ("std_msgs/MultiArrayLayout", include_str!("../common_interfaces/std_msgs/MultiArrayLayout.msg")),
     ("std_msgs/String", include_str!("../common_interfaces/std_msgs/String.msg")),
     ("std_msgs/UInt32", include_str!("../common_interfaces/std_msgs/UInt32.msg")),
     ("std_msgs/UInt8", include_str!("../common_interfaces/std_msgs/UInt8.msg")),

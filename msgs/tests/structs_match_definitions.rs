@@ -6,7 +6,8 @@
 #![allow(clippy::panic)]
 
 use excavator_msgs::common::{
-    Clock, DiagnosticArray, DiagnosticStatus, Flag, FluidPressure, JointState, KeyValue, Log, Text,
+    Clock, DiagnosticArray, DiagnosticStatus, Flag, Float64MultiArray, FluidPressure, FluidPressureArray, JointState,
+    KeyValue, Log, Text,
 };
 use excavator_msgs::layout::{Field, flat_fields};
 use excavator_msgs::{
@@ -129,6 +130,8 @@ fn structs_of_other_packages_have_the_fields_of_their_definitions() {
     assert_matches::<DiagnosticStatus>();
     assert_matches::<KeyValue>();
     assert_matches::<FluidPressure>();
+    assert_matches::<FluidPressureArray>();
+    assert_matches::<Float64MultiArray>();
     assert_matches::<JointState>();
     assert_matches::<Log>();
     assert_matches::<Flag>();

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use excavator_model::display::PressureUnit;
 use excavator_study::recording_part::Part;
 
-use crate::cli::{Mapping, ModelChoice, Recordings};
+use crate::cli::{Extent, Mapping, ModelChoice, Recordings};
 use crate::terminal::{command, print_fitted};
 
 /// Both halves of a recording of `duration` s, for a command that needs one to fit and another for validation. If `bag` is
@@ -43,6 +44,11 @@ impl NextStep {
         self.word(option).word(path.display().to_string())
     }
 
+    /// Adds an option with a file to write: `name`, or the next free name with a number, since no output replaces a file.
+    pub fn new_file(self, option: &str, name: &str) -> Self {
+        self.path(option, &free(Path::new(name)))
+    }
+
     /// Adds the model in `file`, with the catalogues that `choice` needs.
     pub fn model(self, file: &Path, choice: &ModelChoice) -> Self {
         let step = self.path("--model", file);
@@ -70,14 +76,18 @@ impl NextStep {
         if mapping.leave_out_stops { step.word("--leave-out-stops") } else { step }
     }
 
+    /// Adds `--whole`, if all of a long recording is used.
+    pub fn extent(self, extent: Extent) -> Self {
+        if extent.whole { self.word("--whole") } else { self }
+    }
+
     /// Adds the same recordings for the fit and for validation.
     pub fn recordings(self, recordings: &Recordings) -> Self {
         let paths = |step: NextStep, option: &str, bags: &[PathBuf]| {
             bags.iter().fold(step.word(option), |step, bag| step.word(bag.display().to_string()))
         };
         let step = paths(self, "--identification", &recordings.identification);
-        let step = paths(step, "--validation", &recordings.validation).mapping(&recordings.mapping);
-        if recordings.extent.whole { step.word("--whole") } else { step }
+        paths(step, "--validation", &recordings.validation).mapping(&recordings.mapping).extent(recordings.extent)
     }
 
     /// A diagnosis needs one recording for the fit and another for validation: here both halves of `bag`, which is `duration` s
@@ -95,8 +105,21 @@ impl NextStep {
 
     /// The sentence and the command.
     fn text(&self, width: Option<usize>) -> String {
-        format!("Next, {}:\n{}", self.why, command(&self.words, width))
+        let mut words = self.words.clone();
+        if PressureUnit::shown() != PressureUnit::default() {
+            words.extend(["--units".to_string(), PressureUnit::shown().symbol().to_string()]);
+        }
+        format!("Next, {}:\n{}", self.why, command(&words, width))
     }
+}
+
+/// `path` if nothing is there, else the first of `NAME-2`, `NAME-3`, ... that is free.
+pub fn free(path: &Path) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let extension = path.extension().map_or(String::new(), |extension| format!(".{}", extension.to_string_lossy()));
+    let numbered = (2..).map(|number: usize| path.with_file_name(format!("{stem}-{number}{extension}")));
+    let mut all = std::iter::once(path.to_path_buf()).chain(numbered);
+    all.find(|path| path.symlink_metadata().is_err()).unwrap_or_default()
 }
 
 /// Whether no next command is printed, because it follows by itself.

@@ -71,6 +71,7 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::Design(_)
         | WorkError::Energy(_)
         | WorkError::Refine(_)
+        | WorkError::Fit(_)
         | WorkError::Run(_)
         | WorkError::Signal(_)
         | WorkError::Json(_)

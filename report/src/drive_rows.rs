@@ -36,6 +36,7 @@ pub fn drive_rows(one: &Characterisation) -> Vec<DriveRow> {
             let shown = PressureUnit::shown();
             let margin = valve.compensator_margin;
             row("drop that the compensator leaves".into(), margin, shown.factor(), shown.symbol());
+            row("standby pressure of the pump".into(), valve.standby_pressure, shown.factor(), shown.symbol());
             row("leakage past the piston, steady".into(), valve.leakage, leak_factor, &leak_unit);
         }
         Ok(DriveCurve::Pump(pump)) => {

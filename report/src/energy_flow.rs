@@ -1,12 +1,13 @@
 //! Draws the energy flow as ribbons from the pump to the losses and stores.
 
-use excavator_identification::energy::Totals;
+use excavator_identification::energy::{Budget, Totals};
 use excavator_model::Model;
 use excavator_model::effects::ActsOn;
 use excavator_model::machine::Supply;
 use excavator_model::site_name;
 use maud::Markup;
 
+use super::energy_text::delivered_by;
 use super::numbers::{percent, significant};
 use super::sankey::{Node, Ribbon, sankey};
 use super::words;
@@ -27,7 +28,7 @@ const SMALLEST: f64 = 5e-4;
 
 /// The picture of some energies.
 pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
-    let mut flow = Flow { nodes: Vec::new(), ribbons: Vec::new(), whole: whole(model, totals) };
+    let mut flow = Flow { nodes: Vec::new(), ribbons: Vec::new(), whole: Budget::of(model, totals).delivered };
     let machine = &model.machine;
     let pump = matches!(machine.supply, Supply::PumpLine(_)).then(|| flow.node("pump", totals.pump, PUMP, SOURCE));
     let cylinders: Vec<usize> = machine
@@ -51,9 +52,10 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
         flow.give(pump, "stored in the pump line", totals.pump_line, CYLINDERS, STORED);
         flow.give(pump, "not explained in the pump line", -totals.pump_residual(), CYLINDERS, UNEXPLAINED);
     } else {
-        for (index, own) in totals.cylinders.iter().enumerate() {
-            let source = flow.node("supplied", own.supplied, PUMP, SOURCE);
+        let source = flow.node(delivered_by(model), flow.whole, PUMP, SOURCE);
+        for ((index, cylinder), own) in machine.cylinders.iter().enumerate().zip(&totals.cylinders) {
             flow.pass(source, cylinders[index], own.supplied);
+            flow.give(source, &format!("metering, {} valve", cylinder.name), own.metering_loss, CYLINDERS, LOSS);
         }
     }
     for (index, (cylinder, own)) in machine.cylinders.iter().zip(&totals.cylinders).enumerate() {
@@ -70,16 +72,6 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
         flow.give(from, &label("not explained"), -totals.residual(index), TAKERS, UNEXPLAINED);
     }
     sankey(&flow.nodes, &flow.ribbons, "flow of energy from the pump to losses and storage")
-}
-
-/// Energy that counts as 100 %.
-pub(super) fn whole(model: &Model, totals: &Totals) -> f64 {
-    match model.machine.supply {
-        Supply::PumpLine(_) => totals.pump,
-        Supply::PressureSource(_) | Supply::None => {
-            totals.cylinders.iter().map(|own| own.supplied.abs() + own.metering_loss.max(0.0)).sum()
-        }
-    }
 }
 
 struct Flow {

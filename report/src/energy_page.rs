@@ -4,8 +4,9 @@ use excavator_identification::energy::{CylinderTraces, EnergyAnalysis, missing_p
 use excavator_model::Model;
 use maud::{Markup, html};
 
-use super::energy_flow::{energy_flow, whole};
+use super::energy_flow::energy_flow;
 use super::energy_tables::{by_opening, energies, evidence, ledger, pump_line};
+use super::energy_text::budget_sentence;
 use super::numbers::{decimal, percent, significant};
 use super::page::{Section, page, tile};
 use super::power_plots::{PowerLine, PowerPlot};
@@ -38,7 +39,8 @@ const POINTS_OF_A_PAGE: usize = 50_000;
 pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
     let missing = missing_power(model, analysis);
     let totals = &analysis.totals;
-    let whole = whole(model, totals);
+    let budget = analysis.budget(model);
+    let whole = budget.delivered;
     let supplied: f64 = totals.cylinders.iter().map(|own| own.supplied).sum();
     let metering: f64 = totals.cylinders.iter().map(|own| own.metering_loss).sum();
     let lead = html! {
@@ -48,11 +50,14 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
                 None => { "The ledger closes: at every equation noise explains the energy that is left over." }
                 Some(first) => { "The ledger does not close. " (first.sentence) }
             }
+            " " (budget_sentence(model, analysis))
         }
         div.tiles {
             (tile(&format!("{} kJ", significant(whole / 1e3, 3)), "delivered"))
-            @if totals.pump != 0.0 { (tile(&percent(totals.bypass_loss() / whole), "lost between pump and tank")) (tile(&percent(metering / whole), "lost in the valve sections")) }
+            @if totals.pump != 0.0 { (tile(&percent(totals.bypass_loss() / whole), "lost between pump and tank")) }
+            @if metering != 0.0 { (tile(&percent(metering / whole), "lost in the valve sections")) }
             (tile(&percent(supplied / whole), "into the cylinders"))
+            (tile(&percent(budget.share_of(budget.unexplained())), "not explained"))
             (tile(&format!("{} s", significant(analysis.duration, 3)), "recording"))
         }
     };

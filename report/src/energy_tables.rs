@@ -1,96 +1,56 @@
 //! Tables of energies and of the ledger.
 
-use excavator_identification::energy::{EnergyAnalysis, MissingPower, Regime, Totals};
+use excavator_identification::energy::{Budget, BudgetShare, EnergyAnalysis, MissingPower, Regime};
 use excavator_identification::results::ByOpening;
 use excavator_model::Model;
-use excavator_model::effects::ActsOn;
-use excavator_model::machine::Supply;
-use excavator_model::site_name;
 use maud::{Markup, html};
 
-use super::energy_flow::whole;
+use super::energy_text::{budget_label, delivered_by};
 use super::numbers::{NOTHING, percent, significant};
 use super::words;
 
-/// Energies over the recording and per cycle.
+/// Energies over the recording and per cycle: one sum.
 pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
-    let whole = whole(model, &analysis.totals);
-    let rows = lines(model, &analysis.totals);
-    let cycle = analysis.cycle.as_ref().map(|cycle| (lines(model, &cycle.mean), lines(model, &cycle.deviation)));
+    let budget = analysis.budget(model);
+    let cycle = analysis.cycle.as_ref().map(|cycle| [&cycle.mean, &cycle.deviation].map(|one| Budget::of(model, one)));
+    let numbers = |energy: f64| {
+        html! {
+            td.n { (significant(energy, 4)) }
+            td.n { (percent(budget.share_of(energy))) }
+            td.n { (significant(energy / analysis.totals.duration, 3)) }
+        }
+    };
     html! {
         div.wide { table.data {
             thead { tr {
-                th { "Energy" } th { "Effect" } th.n { "J" } th.n { "Share" } th.n { "Mean power, W" }
+                th { "Energy" } th.n { "J" } th.n { "Share" } th.n { "Mean power, W" }
                 @if let Some(cycle) = &analysis.cycle { th.n { "J per cycle of " (significant(cycle.period, 3)) " s" } }
             } }
-            tbody { @for (index, line) in rows.iter().enumerate() {
-                tr class=[line.heading.then_some("group")] {
-                    td { (line.what) } td { @if let Some(effect) = line.effect { code { (effect) } } }
-                    td.n { (significant(line.energy, 4)) }
-                    td.n { (percent(line.energy / whole)) }
-                    td.n { (significant(line.energy / analysis.totals.duration, 3)) }
-                    @if let Some((mean, deviation)) = &cycle {
-                        td.n { (mean.get(index).map_or(NOTHING.to_string(), |own| significant(own.energy, 3))) " ± "
-                            (deviation.get(index).filter(|own| !own.derived).map_or(NOTHING.to_string(), |own| significant(own.energy.abs(), 2))) }
-                    }
+            tbody {
+                tr.group {
+                    td { "delivered by the " (delivered_by(model)) } (numbers(budget.delivered))
+                    @if let Some([mean, _]) = &cycle { td.n { (significant(mean.delivered, 3)) } }
                 }
-            } }
+                @for line in &budget.lines { tr {
+                    td { (budget_label(line)) } (numbers(line.energy))
+                    @if let Some([mean, deviation]) = &cycle { td.n {
+                        (mean.find(line).map_or(NOTHING.to_string(), |own| significant(own.energy, 3)))
+                        // The deviation of a sum is not the sum of deviations, so stores and what is left have none.
+                        @if let (BudgetShare::Lost, Some(own)) = (line.share, deviation.find(line)) {
+                            " ± " (significant(own.energy.abs(), 2))
+                        }
+                    } }
+                } }
+            }
         } }
         p.note {
-            "Share: of the energy that the pump delivered, or where the model has no pump of what the cylinders were given. "
+            "The lines below the first add up to it. Share: of the delivered energy. "
             @if let Some(cycle) = &analysis.cycle { "Per cycle: mean and standard deviation over " (cycle.count) " whole cycles. " }
             "Powers are integrated over " (significant(analysis.totals.duration, 4)) " s of "
             (significant(analysis.duration, 4)) " s"
             @if analysis.gaps > 0 { "; " (analysis.gaps) " gaps are left out" } "."
         }
     }
-}
-
-/// Label for the unexplained gain of a ledger that does not close.
-const UNEXPLAINED: &str = "gained without explanation";
-
-struct Line<'a> {
-    what: String,
-    effect: Option<&'a str>,
-    energy: f64,
-    heading: bool,
-    /// Whether it is a difference of other lines. Its deviation is not the difference of theirs.
-    derived: bool,
-}
-
-fn lines<'a>(model: &Model, totals: &'a Totals) -> Vec<Line<'a>> {
-    let mut lines = Vec::new();
-    let mut add = |what: String, effect: Option<&'a str>, energy: f64, heading: bool| {
-        let derived = what.starts_with(UNEXPLAINED);
-        lines.push(Line { what, effect, energy, heading, derived });
-    };
-    if matches!(model.machine.supply, Supply::PumpLine(_)) {
-        add("Pump".into(), None, totals.pump, true);
-        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
-            if effect.into_pump_line != 0.0 {
-                add("lost between pump and tank".into(), Some(&effect.effect), -effect.into_pump_line, false);
-            }
-        }
-        for (cylinder, own) in model.machine.cylinders.iter().zip(&totals.cylinders) {
-            add(format!("lost metering in the {} valve section", cylinder.name), None, own.metering_loss, false);
-        }
-        add("stored in the pump line".into(), None, totals.pump_line, false);
-        add(format!("{UNEXPLAINED} in the pump line"), None, totals.pump_residual(), false);
-    }
-    for (index, (cylinder, own)) in model.machine.cylinders.iter().zip(&totals.cylinders).enumerate() {
-        add(format!("Supplied to the {} cylinder", cylinder.name), None, own.supplied, true);
-        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
-            if site_name(&model.machine, effect.site) == cylinder.name {
-                add("dissipated".into(), Some(&effect.effect), -effect.into_cylinders, false);
-            }
-        }
-        add("gain of kinetic energy".into(), None, own.kinetic, false);
-        add("gain of potential energy".into(), None, own.potential, false);
-        add("gain of compression energy, cap side".into(), None, own.cap_internal, false);
-        add("gain of compression energy, rod side".into(), None, own.rod_internal, false);
-        add(UNEXPLAINED.into(), None, totals.residual(index), false);
-    }
-    lines
 }
 
 /// Mean powers of each cylinder by the sign of its opening.

@@ -5,6 +5,8 @@
 //! which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
 
 mod assets;
+mod change_page;
+mod change_text;
 mod characterisation_page;
 mod characterisation_plots;
 mod comparison_page;
@@ -16,6 +18,7 @@ mod effect_plot;
 mod energy_flow;
 mod energy_page;
 mod energy_tables;
+mod energy_text;
 mod error_plots;
 mod evidence_tables;
 mod frontier_plot;
@@ -45,12 +48,15 @@ mod words;
 mod tests;
 
 pub use assets::{KINEMATICS, plotting};
+pub use change_page::change_page;
+pub use change_text::{change_sentence, relative_change, spoken_parameter, workshop_value};
 pub use characterisation_page::{characterisation_page, leakage_unit};
 pub use comparison_page::{Beside, comparison_page};
 pub use comparison_text::{comparison_sentence, others_sentence};
 pub use diagnosis_page::diagnosis_page;
 pub use drive_rows::{DriveRow, drive_rows};
 pub use energy_page::energy_page;
+pub use energy_text::{budget_label, budget_sentence, delivered_by};
 pub use named_text::refinement_sentence;
 pub use plausibility_text::implausible_sentence;
 pub use proposal_page::{proposal_page, result as law_result};

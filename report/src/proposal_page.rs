@@ -50,7 +50,7 @@ pub fn proposal_page(model: &Model, found: &Proposals) -> String {
     if !found.proposals.is_empty() {
         let body = html! {
             (table(found))
-            @for proposal in found.proposals.iter().filter(|proposal| proposal.is_in_set).take(MOST_SHOWN) {
+            @for proposal in found.proposals.iter().filter(|proposal| is_favoured(found, proposal)).take(MOST_SHOWN) {
                 (shown(found, proposal, machine, &recordings))
             }
         };
@@ -122,13 +122,20 @@ fn table(found: &Proposals) -> Markup {
 /// What a proposal is, in a word or two.
 pub fn result(found: &Proposals, proposal: &Proposal) -> &'static str {
     let is_alone = found.diagnosis.verdict.set.len() < 2;
-    match (found.kind, proposal.is_in_set) {
+    match (found.kind, is_favoured(found, proposal)) {
         _ if proposal.is_a_curve => "curve",
+        _ if proposal.validation_error >= found.error_before => "no better",
         (ProposalVerdict::Law, true) if is_alone => "explains it",
         (ProposalVerdict::Law, true) => "tied",
         (_, true) => "nearest",
         (_, false) => "helps less",
     }
+}
+
+/// Whether it explains the recordings or, if no law does, belongs to the hypothesis that comes nearest.
+fn is_favoured(found: &Proposals, proposal: &Proposal) -> bool {
+    let is_nearest = found.proposals.first().is_some_and(|first| first.trial == proposal.trial);
+    proposal.is_in_set || found.kind == ProposalVerdict::NoLaw && is_nearest
 }
 
 /// The law, drawn on the residual of the equation, and its numbers.

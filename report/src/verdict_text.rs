@@ -1,12 +1,13 @@
 //! Writes the verdict in plain sentences. They state the reasons of the decision and decide nothing.
 
-use excavator_identification::decision::{Kind, Reason};
+use excavator_identification::decision::{Differing, Kind, Reason};
 use excavator_identification::diagnosis::{Candidate, Diagnosis};
 use excavator_identification::fit::nuisances_shown;
 use excavator_identification::search::Trial;
 use excavator_model::effects::Finding;
 use excavator_model::{Model, site_name};
 
+use super::change_text::change_of;
 use super::numbers::{change_of_error, percent};
 use super::plausibility_text::implausible_sentence;
 use super::words;
@@ -127,6 +128,9 @@ fn change_with(diagnosis: &Diagnosis, trial: &Trial) -> String {
 }
 
 fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
+    if let Some(text) = differing(machine, diagnosis) {
+        return text;
+    }
     let structural = diagnosis.verdict.structural_alternative();
     let selected = diagnosis.selected();
     let mut text = match structural {
@@ -154,6 +158,30 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
         };
     }
     text + &construction(diagnosis)
+}
+
+/// Parameters that drift over the recordings, or differ between their roles.
+fn differing(machine: &str, diagnosis: &Diagnosis) -> Option<String> {
+    let named = |parameters: &[Differing]| {
+        let each = parameters.iter().map(|one| {
+            let place = one.name.split_once('.').map_or("", |(place, _)| place);
+            format!("{} at the {place} {}", one.meaning, change_of(one.values))
+        });
+        words::list(&each.collect::<Vec<_>>(), "and")
+    };
+    match diagnosis.verdict.reasons.first()? {
+        Reason::ParametersDrift { parameters } => Some(format!(
+            "Parameters of {machine} drift over these recordings: {}, from the first half of each to the second. Constant parameters leave \
+             little more than noise. A law of the oil temperature or of time may describe the drift.",
+            named(parameters)
+        )),
+        Reason::MachineDiffers { parameters } => Some(format!(
+            "{machine} itself seems to differ between the recordings for the fit and those for validation: {}. Each side leaves only noise \
+             with parameters of its own.",
+            named(parameters)
+        )),
+        _ => None,
+    }
 }
 
 /// The part that the favoured hypothesis explains.

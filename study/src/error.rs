@@ -7,6 +7,7 @@ use excavator_identification::checks::CheckError;
 use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
+use excavator_identification::fit::FitError;
 use excavator_identification::identify::IdentifyError;
 use excavator_identification::positioner::PositionerError;
 use excavator_identification::refinement::RefineError;
@@ -48,6 +49,8 @@ pub enum WorkError {
     Energy(#[from] EnergyError),
     #[error(transparent)]
     Refine(#[from] RefineError),
+    #[error(transparent)]
+    Fit(#[from] FitError),
     #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]

@@ -7,8 +7,8 @@ use excavator_identification::regression::RegressionError;
 use excavator_identification::selection::{Chosen, Selection, SelectionSettings};
 use excavator_model::Model;
 use excavator_model::formula::Condition;
-use excavator_model::machine::Supply;
-use excavator_model::recording::Recording;
+use excavator_model::machine::{Machine, Supply};
+use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::input_holes;
 
 use crate::spikes::leave_out_spikes;
@@ -136,6 +136,7 @@ pub fn checked(
 ) -> Result<Recording, WorkError> {
     mapped_units::check(name, &model.machine, &report.mapped)?;
     let mut recording = recording;
+    angles_as_displacements(&mut recording, &model.machine);
     remarks.extend(leave_out_spikes(&mut recording).iter().map(|line| format!("{name}: {line}")));
     let (mut recording, reduced) = at_useful_rate(recording);
     remarks.extend(reduced.map(|line| format!("{name}: {line}")));
@@ -170,6 +171,19 @@ pub fn checked(
         }
     }
     Ok(recording)
+}
+
+/// Makes joint angles displacements through the geometry, where these are not measured. Each sensor then counts once.
+fn angles_as_displacements(recording: &mut Recording, machine: &Machine) {
+    for signals in &mut recording.cylinders {
+        let Some(cylinder) = machine.cylinders.iter().find(|cylinder| cylinder.name == signals.name) else { continue };
+        if is_measured(&signals.displacement) {
+            continue;
+        }
+        for (displacement, angle) in signals.displacement.iter_mut().zip(&mut signals.joint_angle) {
+            *displacement = cylinder.linkage.displacement(std::mem::replace(angle, f64::NAN));
+        }
+    }
 }
 
 /// Share of the stroke within which a piston counts as at its stop.
@@ -239,8 +253,26 @@ fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: 
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
+    use excavator_model::document::built_in;
+
     use super::*;
+
+    #[test]
+    fn angles_become_displacements_and_count_once() {
+        let machine = built_in("zx30u").unwrap().machine;
+        let mut recording = Recording::unmeasured("bag", vec![0.0, 0.5], &["boom", "arm"]);
+        let linkage = machine.cylinders[0].linkage;
+        recording.cylinders[0].joint_angle = vec![linkage.joint(-0.1), linkage.joint(0.2)];
+        recording.cylinders[1].joint_angle = vec![4.0, 4.1];
+        recording.cylinders[1].displacement = vec![0.01, 0.02];
+        angles_as_displacements(&mut recording, &machine);
+        let [boom, arm] = &recording.cylinders[..] else { unreachable!() };
+        assert!((boom.displacement[0] + 0.1).abs() < 1e-12 && (boom.displacement[1] - 0.2).abs() < 1e-12);
+        assert!(boom.joint_angle.iter().all(|angle| angle.is_nan()));
+        assert_eq!((&arm.joint_angle[..], &arm.displacement[..]), (&[4.0, 4.1][..], &[0.01, 0.02][..]));
+    }
 
     #[test]
     fn blocks_follow_each_other() {

@@ -8,6 +8,7 @@ use excavator_identification::fit::ProfileInterval;
 use excavator_identification::identify::{HeldOut, Identified};
 use excavator_model::simulation::Profile;
 use excavator_model::{Model, Parameter};
+use excavator_report::budget_sentence;
 
 use crate::WorkError;
 use crate::numbers::number;
@@ -86,10 +87,11 @@ pub fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
 pub fn ledger_sentence(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) -> String {
     let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
     let machine = &model.machine.name;
-    match missing.first() {
+    let closes = match missing.first() {
         None => format!("The ledger of {machine} closes over {over}: every residual is within the noise."),
         Some(first) => format!("The ledger of {machine} does not close over {over}. {}", first.sentence),
-    }
+    };
+    format!("{closes} {}", budget_sentence(model, analysis))
 }
 
 /// Number of pairs that a profile is expected to separate.

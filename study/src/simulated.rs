@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use excavator_model::Model;
-use excavator_model::equations::{Inputs, System};
+use excavator_model::equations::{Inputs, System, USUAL_OIL_TEMPERATURE};
 use excavator_model::machine::Supply;
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, Profile, RunError, Tolerances, rest_state, simulate_from};
@@ -63,6 +63,9 @@ pub fn simulate_commands(
                 signal.fill(value);
             }
         }
+    }
+    if model.reads_temperature() && !is_measured(&commands.oil_temperature) {
+        commands.oil_temperature.fill(USUAL_OIL_TEMPERATURE);
     }
     let cylinders = &model.machine.cylinders;
     let signals = InputSignals::from_recording(model, &commands)?;

@@ -35,6 +35,10 @@ pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> R
                 gains.for_each(|(name, gain)| gain.into_iter().for_each(|gain| writer.set(name, gain)));
                 valve.leakage.into_iter().for_each(|leakage| writer.set("internal_leakage", leakage));
                 valve.compensator_margin.into_iter().for_each(|margin| writer.set("compensator_margin", margin));
+                if let Some(standby) = valve.standby_pressure {
+                    writer.release("standby_pressure");
+                    writer.set("standby_pressure", standby);
+                }
             }
             Ok(DriveCurve::Pump(pump)) => {
                 writer.set("pump_flow_share", pump.share);
@@ -74,6 +78,14 @@ impl Writer<'_> {
             (parameter.value, parameter.source) = (value.value, SOURCE.to_string());
             (parameter.standard_error, parameter.margin_95) = (Some(value.error), None);
         }
+    }
+
+    /// Lets a fit change a parameter that the model holds at zero, since the recordings show its effect.
+    fn release(&mut self, name: &str) {
+        let own = self.model.effects.iter_mut().filter(|effect| effect.site == self.site);
+        own.flat_map(|effect| &mut effect.parameters)
+            .filter(|one| one.card.name == name && one.value == 0.0)
+            .for_each(|parameter| parameter.known = false);
     }
 
     /// Multiplies the parameters of an effect by a share that is not far from one.

@@ -26,6 +26,7 @@ PAGES = {
     "comparison": ["compare", "--model", "zx30u-arm", "--bag", "validation", "--repeat", "identification"],
     "two-models": ["compare", "--model", "zx30u-arm", "--against", "refined.toml", "--bag", "validation"],
     "energy": ["energy", "--model", "zx30u-arm", "--bag", "validation"],
+    "changed": ["changed", "--model", "zx30u-arm", "--before", "identification", "--after", "validation"],
     "refusals": ["characterise", "--model", "zx30u-arm", "validation"],
     "characterisation": ["characterise", "--model", "servo-bench", *CAMPAIGN],
     "diagnosis": ["diagnose", "--model", "zx30u-arm", *PARTS, "--save", "study.json"],

@@ -77,6 +77,10 @@ OFFLINE = {
         works=[["diagnose", *MODEL, *SHORT, "--save", "study.json"], ["diagnose", "--verbose", *MODEL, *SHORT]],
         fails=["diagnose", *MODEL, "--identification", "nowhere", "--validation", BAG],
     ),
+    "changed": Recipe(
+        works=[["changed", *MODEL, "--before", BAG, "--after", "identification"]],
+        fails=["changed", *MODEL, "--before", BAG, "--after", "nowhere"],
+    ),
     "report": Recipe(works=[["report", "study.json"]], fails=["report", "law.toml"]),
     "propose": Recipe(works=[["propose", *MODEL, *SHORT]], fails=["propose", *MODEL, "--identification", BAG, "--validation", "nowhere"]),
     "design": Recipe(

@@ -12,6 +12,9 @@ use super::bits::{Bits, Coding};
 
 /// Maximum size of a DBC file, bytes: those of whole vehicles have one or two megabytes.
 const LONGEST: u64 = 16 << 20;
+/// Name of the built-in file, and its text.
+const COM3: &str = "com3";
+const COM3_TEXT: &[u8] = include_bytes!("com3.dbc");
 /// Maximum length of a chain of multiplexers, in which each selects the next.
 const DEEPEST: usize = 8;
 /// Maximum length of a frame (CAN FD), bytes.
@@ -26,6 +29,20 @@ pub struct Identifier {
     pub extended: bool,
 }
 
+impl Identifier {
+    /// Bits of 29 that name a message in J1939 and its relatives: its parameter group number. Priority and source address are not
+    /// among them, nor is the destination of a message that has one.
+    fn group_mask(self) -> u32 {
+        const FIRST_BROADCAST: u32 = 0xf0;
+        if self.number >> 16 & 0xff < FIRST_BROADCAST { 0x03ff_0000 } else { 0x03ff_ff00 }
+    }
+
+    /// Source address of a frame with 29 bits.
+    pub fn source(self) -> Option<u8> {
+        self.extended.then_some(self.number as u8)
+    }
+}
+
 /// A multiplexer, and its values for which the frame carries a signal.
 type Selector = (Bits, Vec<RangeInclusive<u64>>);
 
@@ -33,6 +50,8 @@ type Selector = (Bits, Vec<RangeInclusive<u64>>);
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     identifier: Identifier,
+    /// Bits of the identifier in which a frame agrees with it.
+    mask: u32,
     bits: Bits,
     factor: f64,
     offset: f64,
@@ -45,9 +64,20 @@ pub struct Place {
 }
 
 impl Place {
-    /// Identifier of the frames that may carry the signal.
+    /// Identifier of the message in the file.
     pub fn identifier(&self) -> Identifier {
         self.identifier
+    }
+
+    /// Bits of [`Place::identifier`] in which a frame must agree with it. 11 bits agree as a whole, 29 bits in their parameter group
+    /// number: any source address and priority, unless several messages of the file have the same number.
+    pub fn mask(&self) -> u32 {
+        self.mask
+    }
+
+    /// Whether a frame with this identifier may carry the signal.
+    pub fn is_in(&self, frame: Identifier) -> bool {
+        frame.extended == self.identifier.extended && (frame.number ^ self.identifier.number) & self.mask == 0
     }
 
     /// Unit in the file; empty if none.
@@ -84,11 +114,14 @@ pub struct Database {
 }
 
 impl Database {
-    /// Reads a file.
+    /// Reads a file; `com3`, where there is no such file, is the built-in one of excavators with the interface COM3.
     ///
     /// # Errors
     /// The fault, in one line.
     pub fn read(path: &Path) -> Result<Self, String> {
+        if path.file_name().is_some_and(|name| name == COM3) && !path.exists() {
+            return Database::parse(COM3_TEXT);
+        }
         let failed = |reason: String| format!("{}: {reason}", path.display());
         let length = std::fs::metadata(path).map_err(|error| failed(error.to_string()))?.len();
         if length > LONGEST {
@@ -138,12 +171,10 @@ impl Database {
             let name = &signal.name;
             return Err(format!("{name}: factor {} and offset {} make no value", signal.factor, signal.offset));
         }
-        let identifier = match message.id {
-            MessageId::Standard(number) => Identifier { number: number.into(), extended: false },
-            MessageId::Extended(number) => Identifier { number, extended: true },
-        };
+        let identifier = identifier(message);
         Ok(Place {
             identifier,
+            mask: self.mask(identifier),
             bits,
             factor: signal.factor,
             offset: signal.offset,
@@ -152,6 +183,16 @@ impl Database {
             unit: signal.unit.clone(),
             selectors: self.selectors(message, signal)?,
         })
+    }
+
+    fn mask(&self, identifier: Identifier) -> u32 {
+        const ALL: u32 = 0x1fff_ffff;
+        let group = identifier.group_mask();
+        let is_alike = |other: &&Message| {
+            let other = self::identifier(other);
+            other.extended && (other.number ^ identifier.number) & group == 0
+        };
+        if identifier.extended && self.dbc.messages.iter().filter(is_alike).count() == 1 { group } else { ALL }
     }
 
     fn bits(&self, message: &Message, signal: &Signal) -> Result<Bits, String> {
@@ -220,6 +261,13 @@ impl Database {
             current = selector;
         }
         Ok(selectors)
+    }
+}
+
+fn identifier(message: &Message) -> Identifier {
+    match message.id {
+        MessageId::Standard(number) => Identifier { number: number.into(), extended: false },
+        MessageId::Extended(number) => Identifier { number, extended: true },
     }
 }
 
@@ -308,6 +356,44 @@ mod tests {
         assert_eq!(database.place("ValveState", "OrificeArea").unwrap().range(), Some((-200.0, 200.0)));
         let none = b"BO_ 1 M: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n";
         assert_eq!(Database::parse(none).unwrap().place("M", "S").unwrap().range(), None);
+    }
+
+    #[test]
+    fn any_source_and_priority_of_a_parameter_group_carry_the_signal() {
+        let com3 = Database::read(Path::new("com3")).unwrap();
+        let place = com3.place("Pressure_1", "boom_cylinder_bottom_pressure").unwrap();
+        let frame = |number| Identifier { number, extended: true };
+        let own = place.identifier().number;
+        assert!(place.is_in(frame(own)) && place.is_in(frame(own & 0xffff_ff00 | 0x21)));
+        assert!(place.is_in(frame(own & 0x03ff_ffff | 0x0c00_0000)) && !place.is_in(frame(own ^ 0x100)));
+        assert!(!place.is_in(Identifier { number: own & 0x7ff, extended: false }));
+        // Two messages of one group are told apart by their addresses.
+        let two = b"BO_ 2566879720 A: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n\nBO_ 2566879721 B: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n";
+        let place = Database::parse(two).unwrap().place("A", "S").unwrap();
+        assert!(place.is_in(place.identifier()) && !place.is_in(frame(place.identifier().number + 1)));
+        // A message with a destination goes to any.
+        let asked = b"BO_ 2565472526 R: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n";
+        let place = Database::parse(asked).unwrap().place("R", "S").unwrap();
+        assert!(place.is_in(frame(place.identifier().number & 0xffff_0000 | 0x0733)));
+    }
+
+    /// Values that cantools (PyPI) reads with the published file of the interface.
+    #[test]
+    fn the_built_in_file_reads_what_the_published_one_does() {
+        let vectors: Value = serde_json::from_str(include_str!("../../tests/can/com3.json")).unwrap();
+        let com3 = Database::read(Path::new("com3")).unwrap();
+        let mut read = 0;
+        for frame in vectors.as_array().unwrap() {
+            let (message, data) = (frame["message"].as_str().unwrap(), bytes(frame["data"].as_str().unwrap()));
+            for (signal, value) in frame["values"].as_object().unwrap() {
+                let place = com3.place(message, signal).unwrap();
+                assert_eq!(u64::from(place.identifier().number), frame["id"].as_u64().unwrap(), "{message}");
+                let (found, expected) = (place.value(&data).unwrap(), value.as_f64().unwrap());
+                assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{signal}: {found}, {expected}");
+                read += 1;
+            }
+        }
+        assert_eq!((com3.all_signals().len(), read), (114, 114 * 3));
     }
 
     #[test]

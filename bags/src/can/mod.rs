@@ -3,6 +3,11 @@
 mod bits;
 mod database;
 mod frame;
+mod log;
+mod senders;
 
 pub use database::{Database, Identifier, Place};
 pub(crate) use frame::{DataFrame, FrameReader};
+pub(crate) use log::FrameLog;
+pub use log::is_frame_log;
+pub use senders::{OtherSender, Senders};

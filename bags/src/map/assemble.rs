@@ -13,6 +13,8 @@ use super::resample::{Policy, resample};
 use super::signal_source::SignalSource;
 use super::spike_line::spike_line;
 use super::track::Track;
+use super::traps::{Readings, traps};
+use super::unit::Dimension;
 use super::wanted::{Computed, Wanted};
 use crate::reading::{MappedUnit, ReadReport, count_late, gaps, steps_back};
 
@@ -47,6 +49,15 @@ impl<'m> Input<'m> {
     fn mapped(&self) -> Option<MappedUnit> {
         let (_, conversion) = self.wanted.as_ref()?;
         mapped_unit(self.signal?, conversion)
+    }
+
+    /// What its values measure; `None` for a constant, and for a name without unit.
+    fn dimension(&self) -> Option<Dimension> {
+        let (_, conversion) = self.wanted.as_ref()?;
+        match self.signal {
+            Some(source) => Some(source.signal.kind.dimension()),
+            None => conversion.measures().map(|(dimension, _)| dimension),
+        }
     }
 
     /// Its values at the clock times (ns, ascending).
@@ -124,14 +135,16 @@ pub(super) fn assemble(
     }
     let is_used = |label: &str| computed.iter().any(|computed| computed.inputs.iter().any(|input| input == label));
     let mut used: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut dimensions: Vec<(String, Option<Dimension>)> = Vec::new();
     for input in inputs {
-        let (label, signal) = (input.label.clone(), input.signal);
+        let (label, signal, dimension) = (input.label.clone(), input.signal, input.dimension());
         let is_used = is_used(&label);
         report.mapped.extend(input.mapped());
         if signal.is_none() && !is_used {
             continue;
         }
         let values = input.on(&stamps, clock_name, report)?;
+        dimensions.push((label.clone(), dimension));
         if is_used {
             used.push((label, values.clone()));
         }
@@ -139,6 +152,7 @@ pub(super) fn assemble(
             *source.signal.column(&mut recording) = values;
         }
     }
+    report.notes.extend(odd_readings(&recording, &used, &dimensions));
     for Computed { source, formula, inputs, conversion } in computed {
         // Names of the map are added after signals, and take precedence over signals of the same name.
         let column =
@@ -158,6 +172,21 @@ pub(super) fn assemble(
     }
     report.gaps = gaps(&recording);
     Ok(recording)
+}
+
+/// What is odd about the signals and names that were read.
+fn odd_readings(
+    recording: &Recording,
+    used: &[(String, Vec<f64>)],
+    dimensions: &[(String, Option<Dimension>)],
+) -> Vec<String> {
+    let signals = recording.signals();
+    let of = |(label, dimension): &(String, Option<Dimension>)| {
+        let named = used.iter().find(|(known, _)| known == label).map(|(_, values)| &values[..]);
+        let values = named.or_else(|| signals.iter().find(|(name, _)| name == label).map(|(_, values)| *values))?;
+        Some(Readings { label: label.clone(), dimension: *dimension, values })
+    };
+    traps(&dimensions.iter().filter_map(of).collect::<Vec<_>>())
 }
 
 /// Values stamped by another clock than the samples are in none of them.

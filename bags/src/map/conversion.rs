@@ -66,11 +66,10 @@ impl Conversion {
     /// # Errors
     /// [`MapError::UnknownUnit`].
     pub(super) fn of_name(place: &str, unit: Option<&str>) -> Result<Conversion, MapError> {
-        let unit = match unit {
-            None => Unit::si(Dimension::Number),
-            Some(name) => unit_named(place, name)?,
-        };
-        Ok(Conversion { unit, factor: 1.0, offset: 0.0, dimension: None })
+        let given = unit.map(|name| unit_named(place, name)).transpose()?;
+        let dimension = given.map(|unit| unit.dimension);
+        let unit = given.unwrap_or(Unit::si(Dimension::Number));
+        Ok(Conversion { unit, factor: 1.0, offset: 0.0, dimension })
     }
 
     /// What the values measure, and the unit of the numbers; `None` if neither map nor data say so.

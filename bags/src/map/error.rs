@@ -87,6 +87,18 @@ pub enum MapError {
         /// The first few available names.
         known: Vec<String>,
     },
+    /// Data without any signal of the built-in map `opera`.
+    #[error(
+        "{}: no frame of COM3 and no topic with joints or pressures of OPERA; there are {}",
+        path.display(),
+        if topics.is_empty() { "no topics".to_string() } else { topics.join(", ") }
+    )]
+    NoOpera {
+        /// The data.
+        path: PathBuf,
+        /// The topics that exist.
+        topics: Vec<String>,
+    },
     /// A signal of a CAN frame in a map without DBC file.
     #[error("{place}: a `message` needs a DBC file: put `dbc = \"FILE.dbc\"` at the top of the map")]
     NoDbc {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rosbag2::cdr::CdrError;
 use rosbag2::dynamic::{Definitions, FieldPath, Layout, Selector};
-use rosbag2::{RawMessage, RawMessages, Topic};
+use rosbag2::{RawMessage, Topic};
 
 use super::assemble::Input;
 use super::channels::{Beside, Channels};
@@ -14,9 +14,10 @@ use super::conversion::Conversion;
 use super::error::MapError;
 use super::least_delays::LeastDelays;
 use super::message_times::{Auto, MessageTimes, StampReader, header_selector};
+use super::messages::Messages;
 use super::wanted::Wanted;
 use crate::BagError;
-use crate::can::{DataFrame, Database, FrameReader, Identifier, Place};
+use crate::can::{DataFrame, Database, FrameReader, Identifier, OtherSender, Place, Senders};
 use crate::reading::ReadReport;
 
 /// One topic from which signals are read.
@@ -46,6 +47,7 @@ pub(super) struct MappedTopic<'m> {
     first_undecodable: Option<BagError>,
     /// Frames of a wanted message that are too short for its signals.
     short_frames: u64,
+    senders: Senders,
 }
 
 struct MappedField<'m> {
@@ -55,6 +57,10 @@ struct MappedField<'m> {
     at: At,
     samples: Vec<(i64, f64)>,
     channels: Channels,
+    /// Messages without its element.
+    absent: u64,
+    /// Values outside the range of the DBC file, such as the codes for a fault and for what is not available.
+    out_of_range: u64,
 }
 
 /// How a signal, or the clock, is stamped.
@@ -98,7 +104,16 @@ impl<'m> MappedTopic<'m> {
         let conversion = wanted.conversion(unit.as_deref())?;
         let stamp = StampReader::new(&wanted.from.stamp, self.auto);
         let channels = Channels::default();
-        self.fields.push(MappedField { wanted, conversion, stamp, at, samples: Vec::new(), channels });
+        self.fields.push(MappedField {
+            wanted,
+            conversion,
+            stamp,
+            at,
+            samples: Vec::new(),
+            channels,
+            absent: 0,
+            out_of_range: 0,
+        });
         Ok(())
     }
 
@@ -237,6 +252,19 @@ impl<'m> MappedTopic<'m> {
             (Some(reader), true) => reader.read(layout, &message.data)?,
             _ => None,
         };
+        // The message of the DBC file that the frame carries, by this topic's own sender of it.
+        let known = frame.and_then(|frame| {
+            let places = self.fields.iter().filter_map(|field| match &field.at {
+                At::Frame(place) if place.is_in(frame.identifier) => Some(place.identifier()),
+                _ => None,
+            });
+            places.into_iter().next()
+        });
+        if let (Some(frame), Some(known)) = (frame, known)
+            && !self.senders.takes(known, frame.identifier, times.log)
+        {
+            return Ok(0);
+        }
         let mut is_wanted = !is_of_frames;
         let mut is_short = false;
         let (mut taken, mut left_out) = (0, 0);
@@ -244,13 +272,18 @@ impl<'m> MappedTopic<'m> {
             let number = match (&mapped.at, &frame) {
                 (At::Field(_, Some(selector)), _) => {
                     is_wanted = true;
-                    selector.read(layout, &message.data)?
+                    let number = selector.read(layout, &message.data)?;
+                    mapped.absent += u64::from(number.is_none());
+                    number
                 }
-                (At::Frame(place), Some(DataFrame { identifier, data })) if place.identifier() == *identifier => {
+                (At::Frame(place), Some(DataFrame { identifier, data })) if place.is_in(*identifier) => {
                     is_wanted = true;
                     let number = place.is_selected(data).then(|| place.value(data));
                     is_short |= number == Some(None);
-                    number.flatten()
+                    let is_possible =
+                        |value: &f64| place.range().is_none_or(|(least, most)| (least..=most).contains(value));
+                    mapped.out_of_range += u64::from(number.flatten().is_some_and(|value| !is_possible(&value)));
+                    number.flatten().filter(is_possible)
                 }
                 _ => None,
             };
@@ -273,7 +306,7 @@ impl<'m> MappedTopic<'m> {
                 None => self.unstamped += 1,
             }
             let stamp = self.clock_stamp.read(times, layout, message)?;
-            let of = frame.filter(|_| is_of_frames).map(|frame| frame.identifier);
+            let of = known.filter(|_| is_of_frames);
             match self.stamps.iter_mut().find(|(known, _)| *known == of) {
                 Some((_, stamps)) => stamps.push(stamp),
                 None => self.stamps.push((of, vec![stamp])),
@@ -287,7 +320,7 @@ impl<'m> MappedTopic<'m> {
     ///
     /// # Errors
     /// [`BagError::NoMessages`], [`BagError::NoTopic`], [`BagError::Undecodable`].
-    pub fn finish(&mut self, messages: &RawMessages, report: &mut ReadReport) -> Result<(), BagError> {
+    pub fn finish(&mut self, messages: &Messages, report: &mut ReadReport) -> Result<(), BagError> {
         if self.seen == 0 {
             let (path, topic) = (messages.path().to_path_buf(), self.name.to_string());
             let existing: Vec<String> = messages.topics().iter().map(|topic| topic.name.clone()).collect();
@@ -308,6 +341,27 @@ impl<'m> MappedTopic<'m> {
         if self.short_frames > 0 {
             let (topic, count) = (&self.name, self.short_frames);
             report.notes.push(format!("{topic}: {count} frames are shorter than their message in the DBC file"));
+        }
+        for field in &self.fields {
+            let (label, topic, seen) = (&field.wanted.label, &self.name, self.seen);
+            if field.out_of_range > 0 {
+                let count = field.out_of_range;
+                report.notes.push(format!(
+                    "{label}: {count} values outside the range of the DBC file are not measured: codes for a fault or a missing sensor"
+                ));
+            }
+            if (1..seen).contains(&field.absent) {
+                let count = field.absent;
+                report.notes.push(format!(
+                    "{label}: {count} of {seen} messages of {topic} have no such element: another publisher writes other names on it"
+                ));
+            }
+        }
+        for OtherSender { used, other, frames } in self.senders.others() {
+            report.notes.push(format!(
+                "{}: two senders of one message, addresses 0x{used:02X} and 0x{other:02X}; the first is used, {frames} frames of others are left out",
+                self.name
+            ));
         }
         Ok(())
     }

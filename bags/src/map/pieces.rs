@@ -51,12 +51,12 @@ pub fn read_pieces(
         return Err(MapError::JoinsOfPieces { pieces: paths.len() }.into());
     }
     let of_first = match paths.first() {
-        Some(first) => map_of(first, map)?,
+        Some(first) => map_of(first, map, None)?,
         None => None,
     };
     let mut pieces = Vec::new();
     for (number, path) in paths.iter().enumerate() {
-        let own = if number == 0 { None } else { map_of(path, map)? };
+        let own = if number == 0 { None } else { map_of(path, map, None)? };
         let mut map = own.or_else(|| of_first.clone());
         add_joins(path, map.as_mut(), joins)?;
         let (recording, report, dating) = read_with(path, map.as_ref(), None)?;

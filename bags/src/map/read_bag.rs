@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use excavator_model::recording::Recording;
-use rosbag2::RawMessages;
 use rosbag2::dynamic::Definitions;
 
 use super::assemble::{Input, assemble, constants};
@@ -13,6 +12,7 @@ use super::error::MapError;
 use super::joined::{self, Span};
 use super::mapped_topic::MappedTopic;
 use super::message_times::Auto;
+use super::messages::Messages;
 use super::one_clock::{two_publishers, warnings, why_by_log_times};
 use super::table_clock::{Dating, EPOCH_SECONDS};
 use super::wanted::{Wanted, wanted};
@@ -102,7 +102,7 @@ fn read_once<'m>(
     reading: &Reading,
 ) -> Result<(Vec<MappedTopic<'m>>, ReadReport), BagError> {
     let mut topics = mapped_topics(map, fields, reading)?;
-    let mut messages = RawMessages::open(path)?;
+    let mut messages = Messages::open(path)?;
     let (mut counts, mut report) = (TopicCounts::of(path), ReadReport::default());
     let mut first_log_time = None;
     let mut memory = 0;
@@ -120,6 +120,9 @@ fn read_once<'m>(
     report.truncated_after = truncated_after(&report.damage, first_log_time);
     let found: u64 = report.messages.values().sum();
     report.missing_messages = messages.promised_messages().unwrap_or(0).saturating_sub(found);
+    if messages.unreadable() > 0 {
+        report.notes.push(format!("{} lines are no frames and were left out", messages.unreadable()));
+    }
     for topic in &mut topics {
         topic.finish(&messages, &mut report)?;
         report.sources.insert(topic.name.clone(), topic.labels());

@@ -6,9 +6,11 @@ use std::path::Path;
 use excavator_model::recording::Recording;
 
 use super::document::TopicMap;
+use super::opera;
 use super::read_bag::read_bag;
 use super::read_table::read_table;
 use super::table_clock::{Dating, EPOCH_SECONDS};
+use crate::can::is_frame_log;
 use crate::info::{SignalsInfo, SignalsTally};
 use crate::reading::{ReadReport, read_recording, read_recording_in_blocks};
 use crate::table::Table;
@@ -30,7 +32,7 @@ pub fn read_mapped(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport
 
 /// As [`read_mapped`]; also returns the kind of the times.
 pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport, Dating), BagError> {
-    let (mut recording, mut report, dating) = if Table::is_table(path) {
+    let (mut recording, mut report, dating) = if Table::is_table(path) && !is_frame_log(path) {
         read_table(path, Table::read(path, &map.table)?, map)?
     } else {
         read_bag(path, map)?
@@ -44,7 +46,8 @@ pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, Read
 /// Options for finding signals in data.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Origin<'o> {
-    /// File of a map; if not given, the map next to the data is used, if it exists (see [`TopicMap::beside`]).
+    /// File of a map, or the name of a built-in one ([`OPERA`](super::OPERA)); if not given, the map next to the data is used, if it
+    /// exists (see [`TopicMap::beside`]).
     pub map: Option<&'o Path>,
     /// Namespace of the machine in a bag of our own topics; if not given, see [`Topics::in_bag`].
     pub namespace: Option<&'o str>,
@@ -67,7 +70,7 @@ pub struct Origin<'o> {
 /// All of [`read_mapped`], [`Topics::in_bag`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for
 /// a table without a map.
 pub fn read_recording_or_mapped(path: &Path, origin: Origin<'_>) -> Result<(Recording, ReadReport), BagError> {
-    let map = map_of(path, origin.map)?;
+    let map = map_of(path, origin.map, origin.namespace)?;
     read_with(path, map.as_ref(), origin.namespace).map(|(recording, report, _)| (recording, report))
 }
 
@@ -77,8 +80,8 @@ pub fn read_recording_or_mapped(path: &Path, origin: Origin<'_>) -> Result<(Reco
 /// # Errors
 /// As [`read_recording_or_mapped`].
 pub fn read_signals(path: &Path, origin: Origin<'_>) -> Result<(SignalsInfo, ReadReport), BagError> {
-    let map = map_of(path, origin.map)?;
-    if map.is_some() || Table::is_table(path) {
+    let map = map_of(path, origin.map, origin.namespace)?;
+    if map.is_some() || Table::is_table(path) || is_frame_log(path) {
         let (recording, report, _) = read_with(path, map.as_ref(), origin.namespace)?;
         return Ok((SignalsInfo::of(&recording), report));
     }
@@ -93,12 +96,15 @@ pub fn read_signals(path: &Path, origin: Origin<'_>) -> Result<(SignalsInfo, Rea
 /// Number of samples in memory at a time.
 const BLOCK: usize = 20_000;
 
-/// The map in the given file, otherwise the one next to the data, if it exists.
-pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>, BagError> {
+/// The map in the given file or of the given name, otherwise the one next to the data, if it exists.
+pub(super) fn map_of(data: &Path, map: Option<&Path>, namespace: Option<&str>) -> Result<Option<TopicMap>, BagError> {
     if !data.exists() {
         return Err(rosbag2::Error::DoesNotExist { path: data.to_path_buf() }.into());
     }
-    map.map(Path::to_path_buf).or_else(|| TopicMap::beside(data)).map(|map| TopicMap::read(&map)).transpose()
+    match map {
+        Some(name) if name == Path::new(opera::OPERA) && !name.exists() => opera::map(data, namespace).map(Some),
+        _ => map.map(Path::to_path_buf).or_else(|| TopicMap::beside(data)).map(|map| TopicMap::read(&map)).transpose(),
+    }
 }
 
 /// Reads data with this map, or without one as a bag of our own topics.
@@ -109,6 +115,12 @@ pub(super) fn read_with(
 ) -> Result<(Recording, ReadReport, Dating), BagError> {
     match map {
         Some(map) => read_dated(path, map),
+        None if is_frame_log(path) => Err(BagError::BadTable {
+            path: path.to_path_buf(),
+            reason:
+                "a log of CAN frames needs a map with a DBC file: give one with --map; --map opera reads frames of COM3"
+                    .to_string(),
+        }),
         None if Table::is_table(path) => Err(BagError::BadTable {
             path: path.to_path_buf(),
             reason: "a table needs a map that says which column is which signal: give one with --map, or let \

@@ -68,14 +68,21 @@ impl SignalKind {
     }
 
     /// Whether a number of this dimension is a valid value without conversion. A motor has an angle instead of a
-    /// displacement, and a valve opening may be a voltage, a current, a flow or a ratio if the model defines it so.
+    /// displacement, and a valve opening may be a voltage, a current, a flow, a pilot pressure or a ratio if the model defines it so.
     pub fn takes(self, dimension: Dimension) -> bool {
         dimension == self.dimension()
             || match self {
                 SignalKind::Displacement => dimension == Dimension::Angle,
                 SignalKind::Velocity => dimension == Dimension::RotationalSpeed,
                 SignalKind::OrificeArea | SignalKind::OrificeCommand => {
-                    matches!(dimension, Dimension::Voltage | Dimension::Current | Dimension::Number | Dimension::Flow)
+                    matches!(
+                        dimension,
+                        Dimension::Voltage
+                            | Dimension::Current
+                            | Dimension::Number
+                            | Dimension::Flow
+                            | Dimension::Pressure
+                    )
                 }
                 _ => false,
             }

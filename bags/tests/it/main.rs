@@ -14,6 +14,7 @@ mod map_text;
 mod mapped_bags;
 mod namespaces;
 mod never_panics;
+mod opera;
 mod other_peoples_bags;
 mod own_messages;
 #[cfg(feature = "tables")]

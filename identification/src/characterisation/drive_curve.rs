@@ -37,6 +37,8 @@ pub struct ValveCurve {
     pub leakage: Option<Estimate>,
     /// Pressure drop that a compensator leaves to the edge that drives, Pa; `None` without a compensator.
     pub compensator_margin: Option<Estimate>,
+    /// Lowest pressure that the pump keeps in front of the edges, Pa; `None` where none shows.
+    pub standby_pressure: Option<Estimate>,
     /// Number of steady stretches.
     pub stretches: usize,
 }
@@ -59,6 +61,9 @@ const NEEDED: (usize, usize) = (6, 4);
 
 /// Inputs closer to each other than this share of the largest count as the same.
 const SAME_INPUT: f64 = 0.02;
+
+/// Drops in both directions that are further apart than this many standard errors are not one compensator's.
+const CLEARLY_APART: f64 = 3.0;
 
 /// The curve of one cylinder's drive.
 ///
@@ -117,11 +122,36 @@ fn compensated(stretches: &[(&Track, Steady)], margin: f64) -> Result<ValveCurve
         Estimate { value, error: 2.0 * value * inner.relative_error().hypot(outer.relative_error()) }
     };
     let drops = [square(cap_in.gain, cap_out.gain), square(rod_in.gain, rod_out.gain)];
+    let standby = standby_pressure(stretches, drops);
+    let margin = match standby {
+        Some((retracts, _)) => Some(drops[usize::from(!retracts)]),
+        None => Estimate::mean(&drops),
+    };
     Ok(ValveCurve {
         gains: [Some(cap_out.gain), Some(rod_out.gain)],
-        compensator_margin: Estimate::mean(&drops),
+        compensator_margin: margin,
+        standby_pressure: standby.map(|(_, pressure)| pressure),
         ..of_inflow(&inflow, stretches.len())
     })
+}
+
+/// Pressure that the pump keeps where the load asks for less, Pa, and whether it shows when the rod retracts. It shows as a drop over
+/// the edge that is larger in the direction with the lower load: there the sum of drop and load is the standby pressure.
+fn standby_pressure(stretches: &[(&Track, Steady)], drops: [Estimate; 2]) -> Option<(bool, Estimate)> {
+    let [extending, retracting] = drops;
+    let apart = retracting.value - extending.value;
+    if apart.abs() < CLEARLY_APART * extending.error.hypot(retracting.error) {
+        return None;
+    }
+    let load = |retracts: bool| {
+        let moving = stretches.iter().map(|(_, one)| one).filter(|one| (one.speed.value < 0.0) == retracts);
+        let pressures: Vec<f64> = moving.map(|one| one.pressures[usize::from(retracts)]).collect();
+        pressures.iter().sum::<f64>() / pressures.len() as f64
+    };
+    let retracts = apart > 0.0;
+    let low = load(retracts);
+    let drop = drops[usize::from(retracts)];
+    (low < load(!retracts)).then(|| (retracts, Estimate { value: drop.value + low, ..drop }))
 }
 
 /// What the edges that the pump feeds tell alone.
@@ -132,6 +162,7 @@ fn of_inflow(valve: &StaticValve, stretches: usize) -> ValveCurve {
         gains: valve.sides.map(|side| side.map(|edge| edge.gain)),
         leakage: None,
         compensator_margin: None,
+        standby_pressure: None,
         stretches,
     }
 }
@@ -197,6 +228,7 @@ fn with_leakage(stretches: &[(&Track, Steady)]) -> Result<ValveCurve, StaticTest
         gains: [gain(&found[0]), gain(&found[1])],
         leakage,
         compensator_margin: None,
+        standby_pressure: None,
         stretches: stretches.len(),
     })
 }

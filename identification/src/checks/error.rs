@@ -58,7 +58,9 @@ pub enum CheckError {
     },
     /// A value that is impossible in SI units.
     #[error(
-        "{source_name}: {signal} reaches {value:.3e} {unit}, but {machine} allows at most {limit:.3e} {unit}; is it in {unit}?"
+        "{source_name}: {signal} reaches {} {unit}, but {machine} allows at most {} {unit}; is it in {unit}?",
+        shown(*value),
+        shown(*limit)
     )]
     ImpossibleValue {
         /// The recording.
@@ -194,6 +196,17 @@ pub const OVERRULABLE: [&str; 10] = [
     "swapped-pressures",
     "same-signal",
 ];
+
+/// A number with four significant digits, with a power of ten only where plain digits would be hard to read.
+fn shown(value: f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    if (-3.0..5.0).contains(&exponent) {
+        let decimals = (3.0 - exponent).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
 
 impl CheckError {
     /// The name under which the refusal can be overruled; `None` if the recording cannot be used at all.

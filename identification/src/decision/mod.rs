@@ -21,4 +21,4 @@ pub use presence::presence;
 pub use resampling::improvement_on_blocks;
 pub use scores::{Hypothesis, Scores, ScoresError};
 pub use statistic::{block_cost, block_costs_of, log_error_ratio, relative_error};
-pub use verdict::{Kind, Reason, Standing, Verdict};
+pub use verdict::{Differing, Kind, Reason, Standing, Verdict};

@@ -128,6 +128,16 @@ pub enum Reason {
         /// Their numbers, the best first.
         hypotheses: Vec<usize>,
     },
+    /// Each half of the recordings leaves only noise with parameters of its own, and they differ.
+    ParametersDrift {
+        /// The parameters, the most significant first: their values in the first and in the second half of each recording.
+        parameters: Vec<Differing>,
+    },
+    /// The recordings that were fitted and those that judge leave only noise with parameters of their own, and they differ.
+    MachineDiffers {
+        /// The parameters, the most significant first: their values where they were fitted, and in those that judge.
+        parameters: Vec<Differing>,
+    },
     /// A machine that is constructed differently explains the recordings as well or better.
     StructuralAlternative {
         /// The hypothesis with the structural effect.
@@ -137,7 +147,33 @@ pub enum Reason {
     },
 }
 
+/// A parameter with two values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Differing {
+    /// Contract name, `arm.coulomb_friction`.
+    pub name: String,
+    /// What it means.
+    pub meaning: String,
+    /// SI unit; `-` for a pure number.
+    pub unit: String,
+    /// Both values, in `unit`.
+    pub values: [f64; 2],
+    /// Half of the 95 % interval of their difference, in `unit`.
+    pub difference_margin_95: f64,
+}
+
 impl Verdict {
+    /// The parameters that drift over the recordings, or differ between those that were fitted and those that judge, if that is the
+    /// reason of the verdict.
+    pub fn differing(&self) -> Option<&[Differing]> {
+        self.reasons.iter().find_map(|reason| match reason {
+            Reason::ParametersDrift { parameters } | Reason::MachineDiffers { parameters } => {
+                Some(parameters.as_slice())
+            }
+            _ => None,
+        })
+    }
+
     /// Whether a structural alternative forbids an attribution.
     pub fn structural_alternative(&self) -> Option<usize> {
         self.reasons.iter().find_map(|reason| match reason {

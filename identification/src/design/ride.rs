@@ -2,7 +2,7 @@
 
 use excavator_model::Model;
 use excavator_model::SignalError;
-use excavator_model::equations::{Channel, System};
+use excavator_model::equations::{Channel, System, USUAL_OIL_TEMPERATURE};
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{
@@ -127,6 +127,7 @@ impl<'m> Rider<'m> {
             }
             Supply::None => {}
         }
+        recording.oil_temperature.fill(USUAL_OIL_TEMPERATURE);
         Profile::command(profiles, &mut recording);
         recording
     }

@@ -4,6 +4,7 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
+use super::confirmed::confirmed;
 use super::remainder::remainders;
 use super::residual_map::{follows, residual_map};
 use super::residual_points::points;
@@ -97,7 +98,7 @@ pub fn diagnose(
     }
     let DiagnosisSettings { effort, policy } = settings;
     let pool = search(model, identification, validation, effort, policy, progress)?;
-    let verdict = decide(&pool.scores, policy);
+    let verdict = confirmed(&pool, decide(&pool.scores, policy), settings);
     progress("where the model fails", 1.0);
     Ok(diagnosis_of(pool, verdict, settings, validation)?)
 }

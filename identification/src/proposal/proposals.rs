@@ -109,41 +109,43 @@ pub(super) fn proposals(
     let lacking =
         if is_needed { unexplained(&diagnosis.given().fit.model, validation, &settings.policy)? } else { None };
     let mut proposals = Vec::new();
-    let numbers = if is_needed { ranked(&diagnosis) } else { Vec::new() };
-    for number in numbers {
-        proposals.extend(of_trial(&diagnosis, number, identification, validation)?);
+    let numbers = if is_needed { ranked(&diagnosis, kind) } else { Vec::new() };
+    let (curves, laws): (Vec<usize>, Vec<usize>) =
+        numbers.into_iter().partition(|&number| is_curve(&diagnosis.trials[number]));
+    for number in laws.into_iter().chain(curves) {
+        let found = of_trial(&diagnosis, number, kind, identification, validation)?;
+        let is_a_curve = found.iter().any(|one| one.is_a_curve);
+        // A law with a coefficient that may be zero is another law of the list with an extra term.
+        let is_sure = is_a_curve || found.iter().all(|one| one.is_in_set || one.merits.unsure_signs.is_empty());
+        if !is_sure || !is_a_curve && proposals.len() >= MOST {
+            continue;
+        }
+        for proposal in found {
+            // A law that several hypotheses share is listed once, with the best of them.
+            if !proposals.iter().any(|other: &Proposal| other.text.name == proposal.text.name) {
+                proposals.push(proposal);
+            }
+        }
     }
-    // A law with a coefficient that may be zero is another law of the list with an extra term.
-    let is_sure =
-        |proposal: &Proposal| proposal.is_in_set || proposal.is_a_curve || proposal.merits.unsure_signs.is_empty();
-    proposals.retain(is_sure);
     Ok(Proposals { kind, survey, proposals, error_before, before, diagnosis, lacking })
 }
 
-/// Trials with laws that improve on the given model: those of the verdict first, then by remaining error, curves last.
-fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
+/// Trials with laws that improve on the given model, by the error that they leave. If a law explains the recordings, the
+/// verdict's own come first: they are the simplest of those that cannot be told apart.
+fn ranked(diagnosis: &Diagnosis, kind: ProposalVerdict) -> Vec<usize> {
     let standings = &diagnosis.verdict.standings;
     let has_law = |trial: &Trial| trial.additions.iter().any(|addition| addition.physics.formula().is_some_and(is_new));
     let mut numbers: Vec<usize> = (1..diagnosis.trials.len())
         .filter(|&number| has_law(&diagnosis.trials[number]) && standings[number].improvement > 0.0)
         .filter(|&number| standings[number].is_admissible || is_curve(&diagnosis.trials[number]))
         .collect();
-    let set = &diagnosis.verdict.set;
-    numbers.sort_by_key(|number| set.iter().position(|one| one == number).unwrap_or(set.len()));
-    let settled = numbers.iter().filter(|number| set.contains(number)).count();
-    numbers[settled..].sort_by(|&a, &b| {
-        let trial = |number: usize| &diagnosis.trials[number];
-        let order = |number: usize| (is_curve(trial(number)), standings[number].log_error_ratio);
-        let ((curve_a, ratio_a), (curve_b, ratio_b)) = (order(a), order(b));
-        curve_a
-            .cmp(&curve_b)
-            .then(ratio_a.total_cmp(&ratio_b))
-            .then(trial(a).added_parameters().cmp(&trial(b).added_parameters()))
+    let set: &[usize] = if kind == ProposalVerdict::Law { &diagnosis.verdict.set } else { &[] };
+    let place = |number: usize| set.iter().position(|&one| one == number).unwrap_or(set.len());
+    let parameters = |number: usize| diagnosis.trials[number].added_parameters();
+    numbers.sort_by(|&a, &b| {
+        let error = |number: usize| standings[number].log_error_ratio;
+        place(a).cmp(&place(b)).then(error(a).total_cmp(&error(b))).then(parameters(a).cmp(&parameters(b)))
     });
-    let curves = numbers.iter().copied().filter(|&number| is_curve(&diagnosis.trials[number])).collect::<Vec<_>>();
-    numbers.retain(|number| !curves.contains(number));
-    numbers.truncate(MOST);
-    numbers.extend(curves);
     numbers
 }
 
@@ -164,6 +166,7 @@ fn is_curve(trial: &Trial) -> bool {
 fn of_trial(
     diagnosis: &Diagnosis,
     number: usize,
+    kind: ProposalVerdict,
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Result<Vec<Proposal>, DiagnosisError> {
@@ -187,7 +190,7 @@ fn of_trial(
             beside: others.map(|other| other.name(&trial.fit.model)).collect(),
             validation_error,
             evidence: diagnosis.verdict.standings[number].improvement,
-            is_in_set: diagnosis.verdict.set.contains(&number),
+            is_in_set: kind == ProposalVerdict::Law && diagnosis.verdict.set.contains(&number),
             is_a_curve: text.source == CURVE,
             merits: merits(&law, effect, &situations),
         });

@@ -17,8 +17,8 @@ use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
 use super::survey::Survey;
 use crate::decision::{Kind, Policy, Reason, Verdict};
-use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
-use crate::search::{Addition, Effort, Pool, Trial, search, try_laws};
+use crate::diagnosis::{DiagnosisError, DiagnosisSettings, confirmed, unexplained};
+use crate::search::{Addition, Effort, Pool, Trial, search, try_each_alone, try_laws};
 
 /// Rounds in which laws are added to the best hypothesis so far. Recordings of one machine can hardly separate two
 /// unknown laws, let alone more.
@@ -43,7 +43,7 @@ pub fn propose(
     let DiagnosisSettings { effort, policy } = settings;
     let half = |what: &str, done: f64| progress(what, 0.5 * done);
     let mut pool = search(model, identification, validation, effort, policy, &half)?;
-    let verdict = pool.verdict(policy);
+    let verdict = confirmed(&pool, pool.verdict(policy), settings);
     let mut survey = Survey::default();
     let kind = match verdict.kind {
         Kind::Adequate => ProposalVerdict::Adequate,
@@ -62,7 +62,17 @@ pub fn propose(
         let situations = situations_of(trial, identification);
         laws_dissipate(trial, &situations) && !reverses_an_opening(trial, &situations)
     };
-    let verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
+    let differing = verdict
+        .reasons
+        .into_iter()
+        .find(|reason| matches!(reason, Reason::ParametersDrift { .. } | Reason::MachineDiffers { .. }));
+    let mut verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
+    if kind == ProposalVerdict::NoLaw
+        && let Some(reason) = differing
+    {
+        verdict.kind = Kind::Unexplained;
+        verdict.reasons.insert(0, reason);
+    }
     proposals(kind, pool, verdict, settings, survey, identification, validation)
 }
 
@@ -112,6 +122,11 @@ impl Trials<'_> {
                 try_laws(pool, base, laws, self.effort, self.policy, &progress);
             }
             self.bounded(pool);
+            if round > 0 {
+                // A law that was found beside another may explain everything by itself.
+                (self.progress)("each law alone", share(0.9));
+                try_each_alone(pool, self.effort, self.policy, &progress);
+            }
             let verdict = pool.verdict(self.policy);
             let ratio = |number: usize| verdict.standings[number].log_error_ratio;
             let is_promising = verdict.best != 0 && ratio(verdict.best) < LARGEST_REST * ratio(0);
@@ -137,7 +152,9 @@ impl Trials<'_> {
     fn of_the_curve(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
         let model = &pool.given().fit.model;
         let Some(left) = unexplained(model, self.identification, self.policy)? else { return Ok(()) };
-        let Some(law) = table_law(&left).and_then(|text| Law::read(&text).ok()) else { return Ok(()) };
+        let taken = names_taken(pool);
+        let named = |text: FormulaText| FormulaText { name: free_name(&text.name, &taken), ..text };
+        let Some(law) = table_law(&left).and_then(|text| Law::read(&named(text)).ok()) else { return Ok(()) };
         let physics: AnyEffect = Arc::new(law);
         let place = left.equation.split_once('.').map_or("", |(place, _)| place);
         let sites = model.free_sites(&physics).into_iter().filter(|&site| site_name(&model.machine, site) == place);
@@ -157,10 +174,7 @@ fn terms_of(trial: &Trial) -> usize {
 
 /// The laws of a shortlist as effects with unique names.
 fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
-    let mut names: Vec<String> =
-        pool.given().fit.model.catalogue.iter().map(|effect| effect.card().name.to_string()).collect();
-    let of_trials = pool.trials.iter().flat_map(|trial| &trial.additions);
-    names.extend(of_trials.map(|addition| addition.physics.card().name.to_string()));
+    let mut names = names_taken(pool);
     let mut laws = Vec::new();
     for candidate in listed {
         let Some(text) = law_text(&candidate.terms, SUMMARY) else { continue };
@@ -171,6 +185,13 @@ fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
         }
     }
     laws
+}
+
+/// Names of all effects of the catalogue and of all laws that were tried.
+fn names_taken(pool: &Pool<'_>) -> Vec<String> {
+    let of_catalogue = pool.given().fit.model.catalogue.iter().map(|effect| effect.card().name.to_string());
+    let of_trials = pool.trials.iter().flat_map(|trial| &trial.additions);
+    of_catalogue.chain(of_trials.map(|addition| addition.physics.card().name.to_string())).collect()
 }
 
 /// The name, with a number if it is taken.

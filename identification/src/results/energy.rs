@@ -6,7 +6,7 @@ use excavator_model::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ByOpening, Energies, EnergyTrace, MissingPower, finite};
+use super::{ByOpening, Energies, EnergyBudget, EnergyTrace, MissingPower, finite};
 use crate::energy::{self, EnergyAnalysis, PhaseCriterion, PhaseDelays, Regime, missing_power};
 
 /// Where the energy of a recording went, and whether the model's ledger closes.
@@ -22,6 +22,8 @@ pub struct Energy {
     pub duration: Option<f64>,
     /// Gaps that were left out.
     pub gaps: usize,
+    /// Where the delivered energy went, in one sum.
+    pub budget: EnergyBudget,
     /// Energies over the recording.
     pub energy: Energies,
     /// Energies per cycle of the work; `null` where the command does not repeat.
@@ -138,6 +140,7 @@ impl Energy {
             samples: analysis.samples,
             duration: finite(analysis.duration),
             gaps: analysis.gaps,
+            budget: EnergyBudget::of(model, analysis),
             energy: Energies::of(model, &analysis.totals, true),
             cycle: analysis.cycle.as_ref().map(|cycle| Cycle::of(model, cycle)),
             by_opening: analysis.by_opening.iter().map(|one| (name(one.cylinder), ByOpening::of(one))).collect(),

@@ -9,12 +9,14 @@
 
 mod by_opening;
 mod candidate;
+mod change;
 mod characterisation;
 mod comparison;
 mod determination;
 mod diagnosis;
 mod energies;
 mod energy;
+mod energy_budget;
 mod energy_traces;
 mod estimate;
 mod friction;
@@ -38,6 +40,7 @@ mod valve_leakage;
 
 pub use by_opening::{ByOpening, MeanPowers};
 pub use candidate::{Bootstrap, Candidate};
+pub use change::{Change, ChangedParameter};
 pub use characterisation::{Characterisation, CylinderCharacterisation};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
 pub use determination::Determination;
@@ -46,6 +49,7 @@ pub use diagnosis::{
 };
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
 pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PumpLine, ValveSection};
+pub use energy_budget::{EnergyBudget, EnergyBudgetLine};
 pub use energy_traces::{EnergyTrace, PowerTrace};
 pub use estimate::{Estimate, Outcome, Refused};
 pub use friction::{Friction, FrictionTerm};

@@ -5,7 +5,8 @@ use schemars::{JsonSchema, Schema};
 use serde_json::json;
 
 use super::{
-    Characterisation, Comparison, Determination, Diagnosis, Energy, Identification, Proposals, Refinement, Separation,
+    Change, Characterisation, Comparison, Determination, Diagnosis, Energy, Identification, Proposals, Refinement,
+    Separation,
 };
 
 /// The JSON schema (draft 2020-12) of every result, by name. A name is that of the verb that writes it; `design` writes two.
@@ -18,6 +19,7 @@ pub fn schemas() -> Vec<(&'static str, Schema)> {
         ("diagnose", schema::<Diagnosis>("diagnose")),
         ("propose", schema::<Proposals>("propose")),
         ("refine", schema::<Refinement>("refine")),
+        ("changed", schema::<Change>("changed")),
         ("design-separation", schema::<Separation>("design")),
         ("design-determination", schema::<Determination>("design --parameter")),
     ]

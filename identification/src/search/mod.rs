@@ -34,4 +34,4 @@ pub use scoring::{begin as scores_of_given, score};
 pub(crate) use scoring::{misfit, side};
 pub use search::search;
 pub use trial::Trial;
-pub(crate) use try_laws::try_laws;
+pub(crate) use try_laws::{try_each_alone, try_laws};

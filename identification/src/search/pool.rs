@@ -124,7 +124,7 @@ impl<'a> Pool<'a> {
     }
 
     /// Recordings that evidence is taken from.
-    pub(super) fn validation(&self) -> &'a [&'a Recording] {
+    pub(crate) fn validation(&self) -> &'a [&'a Recording] {
         self.validation
     }
 

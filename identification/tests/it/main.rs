@@ -4,6 +4,7 @@
 
 mod common;
 mod contact_and_another;
+mod drift;
 mod effects_in_pictures;
 mod energies_of_effects;
 mod full;

@@ -65,6 +65,14 @@ pub enum Oddity {
         /// The least lever, m.
         lever: f64,
     },
+    /// No cylinder is that long or that short.
+    #[error("{cylinder}: its stroke is {} m, and cylinders have 1 mm to 25 m; check its unit", shown(*stroke))]
+    Stroke {
+        /// The cylinder.
+        cylinder: String,
+        /// The stroke, m.
+        stroke: f64,
+    },
     /// With a fully open valve the piston moves implausibly fast or slowly.
     #[error(
         "{cylinder}: with its valve fully open it moves at {speed:.1e} {unit}; check its largest input and the flow gains"
@@ -116,6 +124,8 @@ const SPEEDS: [f64; 2] = [1e-4, 10.0];
 
 /// Motor shaft speed that corresponds to a piston speed of 1 m/s, rad/s.
 const MOTOR_SPEED_UNIT: f64 = 100.0;
+/// Strokes of cylinders, m: from those of small actuators to those of lock gates and hoists.
+const STROKES: std::ops::RangeInclusive<f64> = 1e-3..=25.0;
 /// Largest pressure with an open valve, Pa: that of a burst test.
 const PRESSURE: f64 = 1.5e8;
 /// Damping ratio below which an oscillation grows; rounding errors stay above it.
@@ -134,6 +144,9 @@ pub fn oddities(model: &Model) -> Vec<Oddity> {
         found.extend(implausible(model, effect, parameter, &name));
     }
     for (index, cylinder) in model.machine.cylinders.iter().enumerate() {
+        if !cylinder.is_motor() && !STROKES.contains(&cylinder.stroke) {
+            found.push(Oddity::Stroke { cylinder: cylinder.name.clone(), stroke: cylinder.stroke });
+        }
         found.extend(dead_centre(cylinder));
         if let Some(chambers) = &cylinder.chambers {
             found.extend(chambers_of(cylinder, chambers));

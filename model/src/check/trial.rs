@@ -1,7 +1,7 @@
 //! Simulated response of a machine to a fully opened valve.
 
 use crate::Model;
-use crate::equations::{Inputs, System};
+use crate::equations::{Inputs, System, USUAL_OIL_TEMPERATURE};
 use crate::machine::Supply;
 use crate::recording::Recording;
 use crate::simulation::{InputSignals, Profile, RunError, Segment, Tolerances, reachable_rest_state, simulate_from};
@@ -77,6 +77,7 @@ fn thrown_open(model: &Model, cylinder: usize, area: f64, duration: f64) -> Resu
         recording.tank_pressure.fill(line.tank_pressure);
         recording.pump_flow.fill(line.flow);
     }
+    recording.oil_temperature.fill(USUAL_OIL_TEMPERATURE);
     // Longer than the trial, so that the last sample is open too.
     let segments = vec![Segment::Hold { duration: 2.0 * duration, area }];
     Profile::command(&[Profile { cylinder: names[cylinder].to_string(), segments }], &mut recording);

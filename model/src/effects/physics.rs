@@ -166,6 +166,11 @@ pub trait Physics: Send + Sync {
         false
     }
 
+    /// Whether its law depends on the oil temperature, so that a recording must have it.
+    fn reads_temperature(&self) -> bool {
+        false
+    }
+
     /// Whether it only confines the state to the domain for which \[A\] prints its equations: end stops, boiling oil. The printed
     /// equations have no term for it.
     fn confines(&self) -> bool {
@@ -303,6 +308,7 @@ hooks! {
         fn has_memory() -> bool;
         fn state_scale(state: usize) -> f64;
         fn reads_metering_flows() -> bool;
+        fn reads_temperature() -> bool;
         fn reads_input_rate() -> bool;
         fn adjusts_others() -> bool;
     }

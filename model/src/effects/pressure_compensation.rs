@@ -9,6 +9,8 @@ use crate::machine::Machine;
 /// The data sheet shows whether a section has one, and its margin is the setting of a spring. It is not a candidate of a
 /// diagnosis: a margin within the pressure drops of a recording is a knee that absorbs the errors of a nonlinear gain, a relief
 /// valve or a leaking pump, and a margin above them has no effect. Add it by hand, as `pressure_compensation@arm`, and compare.
+///
+/// A load-sensing pump holds a standby pressure where no load asks for more. At a low load the edge then gets more than its margin.
 pub struct PressureCompensation;
 
 static CARD: Card = Card {
@@ -20,7 +22,7 @@ static CARD: Card = Card {
         "A compensator between pump and metering edge limits the edge's pressure drop to its margin, so the opening sets the flow.",
     ),
     equation: text(
-        "flow from the pump Cf u phi(x), x = d / (1 + (d/pm)^8)^(1/8) for a drop d > 0: the orifice law well below pm, Cf u sqrt(pm) well above; edges to tank keep the orifice law",
+        "flow from the pump Cf u phi(x), x = d / (1 + (d/p)^8)^(1/8) for a drop d > 0, p = max(pm, p0 - p_load): the orifice law well below p, Cf u sqrt(p) well above; edges to tank keep the orifice law",
     ),
     source: text("hydraulics practice (pressure-compensated mobile valves); textbook (e.g. Merritt; Murrenhoff)"),
     shows: text(
@@ -30,19 +32,34 @@ static CARD: Card = Card {
     energy: text("Throttles what the edge would not: its loss is part of the metering loss."),
 };
 
-static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: text("compensator_margin"),
-    symbol: text("pm"),
-    unit: text("Pa"),
-    meaning: text("pressure drop that the compensator leaves to the metering edge"),
-    kind: Kind::Shape,
-    growth: Growth::NONE,
-    minimum: 1e5,
-    maximum: 5e6,
-    typical: 1e6,
-    start: Start::at(&[7e5, 2e6]),
-    prior: None,
-}];
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: text("compensator_margin"),
+        symbol: text("pm"),
+        unit: text("Pa"),
+        meaning: text("pressure drop that the compensator leaves to the metering edge"),
+        kind: Kind::Shape,
+        growth: Growth::NONE,
+        minimum: 1e5,
+        maximum: 5e6,
+        typical: 1e6,
+        start: Start::at(&[7e5, 2e6]),
+        prior: None,
+    },
+    ParameterCard {
+        name: text("standby_pressure"),
+        symbol: text("p0"),
+        unit: text("Pa"),
+        meaning: text("lowest pressure that the pump keeps in front of the metering edge"),
+        kind: Kind::Shape,
+        growth: Growth::NONE,
+        minimum: 0.0,
+        maximum: 5e6,
+        typical: 0.0,
+        start: Start::at(&[0.0]),
+        prior: None,
+    },
+];
 
 impl Physics for PressureCompensation {
     fn card(&self) -> &Card {
@@ -51,6 +68,10 @@ impl Physics for PressureCompensation {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
+    }
+
+    fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
+        (parameter == "standby_pressure").then_some(0.0)
     }
 
     fn has_power(&self) -> bool {
@@ -63,6 +84,9 @@ impl Physics for PressureCompensation {
 
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        now.pistons[cylinder].compensator_margin = Some(parameters[0]);
+        let piston = &mut now.pistons[cylinder];
+        let load = if piston.opening.value() >= 0.0 { piston.cap_pressure } else { piston.rod_pressure };
+        let [margin, standby] = [parameters[0], parameters[1]];
+        piston.compensator_margin = Some(margin + (standby - load - margin).positive_part());
     }
 }

@@ -52,10 +52,15 @@ pub struct Inputs<T> {
     pub tank_pressure: T,
     /// Pump flow Qp, m³/s.
     pub pump_flow: T,
+    /// Oil temperature, °C.
+    pub oil_temperature: T,
 }
 
+/// Oil temperature where none is given, °C: usual for warm mobile hydraulics, and the one to which viscosities are stated.
+pub const USUAL_OIL_TEMPERATURE: f64 = 40.0;
+
 impl<T: Scalar> Inputs<T> {
-    /// All inputs zero, for `cylinders` cylinders.
+    /// All inputs zero, for `cylinders` cylinders, with oil of [`USUAL_OIL_TEMPERATURE`].
     pub fn zero(cylinders: usize) -> Self {
         let zero = T::from(0.0);
         Inputs {
@@ -76,6 +81,7 @@ impl<T: Scalar> Inputs<T> {
             supply_pressure: zero,
             tank_pressure: zero,
             pump_flow: zero,
+            oil_temperature: T::from(USUAL_OIL_TEMPERATURE),
         }
     }
 
@@ -89,6 +95,7 @@ impl<T: Scalar> Inputs<T> {
         self.supply_pressure = other.supply_pressure;
         self.tank_pressure = other.tank_pressure;
         self.pump_flow = other.pump_flow;
+        self.oil_temperature = other.oil_temperature;
     }
 }
 
@@ -111,5 +118,6 @@ impl Inputs<Dual> {
         self.supply_pressure = constant(plain.supply_pressure);
         self.tank_pressure = constant(plain.tank_pressure);
         self.pump_flow = constant(plain.pump_flow);
+        self.oil_temperature = constant(plain.oil_temperature);
     }
 }

@@ -15,7 +15,7 @@ mod system;
 mod valves;
 
 pub use channel::Channel;
-pub use inputs::{ImposedState, Inputs};
+pub use inputs::{ImposedState, Inputs, USUAL_OIL_TEMPERATURE};
 pub use instruments::{Distortion, Instruments};
 pub use law_states::LawStates;
 pub use layout::Layout;

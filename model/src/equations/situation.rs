@@ -1,6 +1,7 @@
 //! The values that effects can read.
 
 use super::Rounding;
+use super::inputs::USUAL_OIL_TEMPERATURE;
 use super::smooth::{LAMINAR_PRESSURE, at_most};
 use crate::effects::Site;
 use crate::machine::{Chambers, Machine, Size};
@@ -139,6 +140,8 @@ pub struct Situation<'m, T> {
     pub tank_pressure: T,
     /// Pump flow Qp, m³/s.
     pub pump_flow: T,
+    /// Oil temperature, °C.
+    pub oil_temperature: T,
 }
 
 impl<'m, T: Scalar> Situation<'m, T> {
@@ -178,6 +181,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             bypass_transition: LAMINAR_PRESSURE,
             tank_pressure: zero,
             pump_flow: zero,
+            oil_temperature: T::from(USUAL_OIL_TEMPERATURE),
         }
     }
 
@@ -204,5 +208,6 @@ impl Situation<'_, Dual> {
         self.pump_pressure = held(&other.pump_pressure);
         self.tank_pressure = held(&other.tank_pressure);
         self.pump_flow = held(&other.pump_flow);
+        self.oil_temperature = held(&other.oil_temperature);
     }
 }

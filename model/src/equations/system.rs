@@ -248,6 +248,7 @@ impl<'m> System<'m> {
         situation.time = inputs.time;
         situation.tank_pressure = inputs.tank_pressure;
         situation.pump_flow = inputs.pump_flow;
+        situation.oil_temperature = inputs.oil_temperature;
         situation.pump_pressure = match layout.pump {
             Some(index) if self.model.imposed == Imposed::Nothing => state[index],
             _ => inputs.supply_pressure,

@@ -80,7 +80,10 @@ const JUMP: f64 = 0.01;
 
 /// Coordinates of a state: s, v, p_cap, p_rod, p_pump, p_tank, u, rod_force, t, each as a fraction of its range from 0 to 1, then
 /// states.
-const COORDINATES: usize = 9;
+const COORDINATES: usize = 10;
+
+/// Oil temperatures of machines at work, °C.
+const COLD_TO_HOT: [f64; 2] = [0.0, 80.0];
 
 /// Checks a law as the effect `number` of `model`, with its parameter values there. `None` if that effect is not a formula.
 pub fn check(model: &Model, number: usize) -> Option<Checked> {
@@ -147,6 +150,7 @@ impl Bench<'_, '_> {
             [-opening, opening],
             [-force, force],
             [0.0, 60.0],
+            COLD_TO_HOT,
         ];
         ranges.extend((0..self.law.states()).map(|state| [-self.law.state_scale(state), self.law.state_scale(state)]));
         ranges
@@ -209,6 +213,7 @@ impl Bench<'_, '_> {
         inputs.supply_pressure = point[4];
         inputs.tank_pressure = point[5];
         inputs.time = point[8];
+        inputs.oil_temperature = point[9];
         let mut workspace = self.system.workspace();
         let mut rates = state.clone();
         let parameters: Vec<T> = self.system.model().parameter_values().into_iter().map(T::from).collect();
@@ -341,7 +346,7 @@ impl Bench<'_, '_> {
 const USUAL_PRESSURE: f64 = 2e7;
 
 /// Values of the coordinates that a curve keeps constant, as fractions of their ranges: a piston that extends under load.
-const USUAL: [f64; COORDINATES] = [0.7, 0.75, 0.4, 0.15, 0.6, 0.1, 0.75, 0.7, 0.5];
+const USUAL: [f64; COORDINATES] = [0.7, 0.75, 0.4, 0.15, 0.6, 0.1, 0.75, 0.7, 0.5, 0.5];
 
 /// Names and units of the coordinates.
 const NAMES: [[&str; 2]; COORDINATES] = [
@@ -354,6 +359,7 @@ const NAMES: [[&str; 2]; COORDINATES] = [
     ["u", "m2"],
     ["rod_force", "N"],
     ["t", "s"],
+    ["temperature", "degC"],
 ];
 
 /// The coordinate that sets a variable.
@@ -368,6 +374,7 @@ fn coordinate(variable: Variable) -> Option<usize> {
         Variable::Opening | Variable::Command | Variable::CapFlow | Variable::RodFlow => Some(6),
         Variable::RodForce => Some(7),
         Variable::Time => Some(8),
+        Variable::Temperature => Some(9),
         _ => None,
     }
 }

@@ -56,6 +56,7 @@ impl Condition {
             now.time = recording.time[sample];
             now.pump_pressure = recording.pump_pressure[sample];
             now.tank_pressure = recording.tank_pressure[sample];
+            now.oil_temperature = recording.oil_temperature[sample];
             for (number, signals) in own.iter().enumerate() {
                 let Some(signals) = signals else { continue };
                 let piston = &mut now.pistons[number];
@@ -89,7 +90,7 @@ impl Condition {
 fn why_not(variable: Variable) -> Option<&'static str> {
     match variable {
         Variable::CapFlow | Variable::RodFlow => Some("no recording has it"),
-        other => other.why_not(),
+        _ => None,
     }
 }
 

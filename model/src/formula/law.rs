@@ -22,6 +22,7 @@ pub struct Law {
     /// Other cylinders named in its formulas.
     pub(super) others: Vec<String>,
     pub(super) reads_metering_flows: bool,
+    pub(super) reads_temperature: bool,
 }
 
 /// Rate of change of a state of a law.
@@ -138,6 +139,10 @@ impl Physics for Law {
 
     fn reads_metering_flows(&self) -> bool {
         self.reads_metering_flows
+    }
+
+    fn reads_temperature(&self) -> bool {
+        self.reads_temperature
     }
 
     fn adjusts_others(&self) -> bool {

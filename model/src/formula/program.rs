@@ -239,8 +239,7 @@ impl<T: Scalar> Moment<'_, '_, T> {
             Variable::PumpPressure => return now.pump_pressure,
             Variable::TankPressure => return now.tank_pressure,
             Variable::Time => return now.time,
-            // The reader rejects formulas with these variables.
-            Variable::Temperature | Variable::Acceleration => return T::from(f64::NAN),
+            Variable::Temperature => return now.oil_temperature,
             _ => {}
         }
         let Some(piston) = cylinder.and_then(|cylinder| now.pistons.get(cylinder)) else { return T::from(f64::NAN) };

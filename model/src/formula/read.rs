@@ -162,9 +162,11 @@ impl<'a> Reader<'a> {
         others.dedup();
         let variables = || inputs.iter().filter_map(|input| variable(input));
         let reads_metering_flows = variables().any(Variable::is_a_metering_flow);
+        let reads_temperature = variables().any(|variable| variable == Variable::Temperature);
         let card = self.card(variables().any(Variable::needs_oil), variables().any(Variable::needs_pressures));
         let text = self.text.clone();
-        Ok(Law { card, row: self.row, parameters, states, program, text, others, reads_metering_flows })
+        let row = self.row;
+        Ok(Law { card, row, parameters, states, program, text, others, reads_metering_flows, reads_temperature })
     }
 
     fn formula(
@@ -217,9 +219,7 @@ impl<'a> Reader<'a> {
     /// Why a variable, of another cylinder or of the effect's own, is not available in this row.
     fn why_not(&self, variable: Variable, of_another: bool) -> Option<&'static str> {
         let is_of_the_pump = self.row.acts_on() == ActsOn::PumpLine;
-        if let Some(reason) = variable.why_not() {
-            Some(reason)
-        } else if self.row.is_a_reading() {
+        if self.row.is_a_reading() {
             Some("what an instrument adds can depend on parameters only")
         } else if is_of_the_pump && variable.is_of_a_cylinder() && !of_another {
             Some("the pump line has no cylinder of its own; say whose, as in boom.v")

@@ -8,7 +8,6 @@ use super::expression::Symbol;
 pub(super) enum Variable {
     Displacement,
     Velocity,
-    Acceleration,
     Joint,
     Rate,
     Lever,
@@ -44,10 +43,9 @@ const fn card(name: &'static str, variable: Variable, unit: &'static str, meanin
 }
 
 /// All variables.
-pub(super) static VARIABLES: [VariableCard; 21] = [
+pub(super) static VARIABLES: [VariableCard; 20] = [
     card("s", Variable::Displacement, "m", "piston displacement from mid-stroke"),
     card("v", Variable::Velocity, "m/s", "piston velocity"),
-    card("a", Variable::Acceleration, "m/s2", "piston acceleration"),
     card("q", Variable::Joint, "rad", "joint coordinate"),
     card("qd", Variable::Rate, "rad/s", "joint rate"),
     card("lever", Variable::Lever, "m", "lever of the cylinder on its joint"),
@@ -98,15 +96,6 @@ impl Variable {
     pub fn needs_pressures(self) -> bool {
         self.needs_oil()
             || matches!(self, Variable::CapPressure | Variable::RodPressure | Variable::CapArea | Variable::RodArea)
-    }
-
-    /// Why a formula cannot use it yet, if it cannot.
-    pub fn why_not(self) -> Option<&'static str> {
-        match self {
-            Variable::Acceleration => Some("the equations of motion are solved for it; use a mass or a state instead"),
-            Variable::Temperature => Some("recordings carry no temperature"),
-            _ => None,
-        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::coarse_inputs::{bend, interval_means, nearest_lines};
 use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
-use crate::equations::{ImposedState, Inputs};
+use crate::equations::{ImposedState, Inputs, USUAL_OIL_TEMPERATURE};
 use crate::machine::{Growth, Size, Supply};
 use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
 use crate::{Imposed, Model, SignalError};
@@ -29,6 +29,9 @@ const STRAIGHT_PRESSURE: f64 = 200.0;
 /// The same for the pump's flow, m³/s: a few millionths of the flow of a small excavator.
 const STRAIGHT_FLOW: f64 = 2e-9;
 
+/// The same for the oil temperature, °C: viscosity changes by a thousandth.
+const STRAIGHT_TEMPERATURE: f64 = 0.03;
+
 /// Permitted deviation of a line, as a fraction of an opening's spread. If two valves nearly close the pump's path to the tank, a
 /// thousandth of an opening is a hundredth of a pressure.
 const MOST_MISSED: f64 = 5e-4;
@@ -48,13 +51,15 @@ pub struct InputSignals {
     supply_pressure: Vec<f64>,
     tank_pressure: Vec<f64>,
     pump_flow: Vec<f64>,
+    oil_temperature: Vec<f64>,
     /// Size of the machine: a small deviation on one machine is large on a smaller one.
     size: Size,
 }
 
 impl InputSignals {
     /// The inputs that `model` needs, from a recording. The spool opening is the measured one if there is a sensor, otherwise the
-    /// command. Tank pressure and pump flow default to the machine's constants.
+    /// command. Tank pressure and pump flow default to the machine's constants. The oil temperature is needed only if an effect of
+    /// the model reads it.
     ///
     /// # Errors
     /// [`SignalError::MissingInput`], [`SignalError::Recording`].
@@ -114,12 +119,19 @@ impl InputSignals {
             Supply::PumpLine(_) if model.imposed == Imposed::Everything => or_constant(&recording.pump_pressure, 0.0),
             Supply::PumpLine(_) | Supply::None => vec![0.0; samples],
         };
+        let oil_temperature = if model.reads_temperature() {
+            let measured = without_holes(&recording.time, &recording.oil_temperature);
+            smoothed(&measured.ok_or_else(|| missing("oil_temperature".to_string()))?)
+        } else {
+            vec![USUAL_OIL_TEMPERATURE; samples]
+        };
         Ok(InputSignals {
             orifice_area,
             orifice_rate,
             rod_force,
             imposed,
             supply_pressure,
+            oil_temperature,
             tank_pressure: smoothed(&or_constant(&recording.tank_pressure, machine.supply.tank_pressure())),
             pump_flow: or_constant(&recording.pump_flow, machine.supply.pump_flow()),
             time: recording.time.clone(),
@@ -157,6 +169,7 @@ impl InputSignals {
             supply_pressure: lines(&self.supply_pressure),
             tank_pressure: lines(&self.tank_pressure),
             pump_flow: lines(&self.pump_flow),
+            oil_temperature: lines(&self.oil_temperature),
         }
     }
 
@@ -259,6 +272,7 @@ impl InputSignals {
             && near_line(&self.supply_pressure, STRAIGHT_PRESSURE)
             && near_line(&self.tank_pressure, STRAIGHT_PRESSURE)
             && near_line(&self.pump_flow, STRAIGHT_FLOW * self.size.factor(Growth::FLOW))
+            && near_line(&self.oil_temperature, STRAIGHT_TEMPERATURE)
     }
 
     /// Inputs at the first sample.
@@ -302,6 +316,7 @@ impl InputSignals {
         inputs.supply_pressure = line(&self.supply_pressure);
         inputs.tank_pressure = line(&self.tank_pressure);
         inputs.pump_flow = line(&self.pump_flow);
+        inputs.oil_temperature = line(&self.oil_temperature);
     }
 }
 

@@ -193,7 +193,8 @@ fn hydraulic(sheet: &DataSheet) -> Vec<Entry> {
             let margin = ("compensator_margin", sheet.metering_drop.unwrap_or(7e5), is_given, source);
             let (above, source) =
                 sheet.load_sensing_margin.map_or((2e6, "usual: 20 bar; see the data sheet"), |margin| (margin, SHEET));
-            entries.push(entry("pressure_compensation", vec![margin]));
+            let standby = ("standby_pressure", 0.0, true, "none shown");
+            entries.push(entry("pressure_compensation", vec![margin, standby]));
             entries.push(entry("load_check_valve", vec![("check_tightness", 1.0, true, "usual with compensators")]));
             if sheet.pump_flow.is_none() {
                 return entries;

@@ -49,6 +49,7 @@ fn lift(inputs: &Inputs<f64>) -> Inputs<Dual> {
         supply_pressure: constant(inputs.supply_pressure),
         tank_pressure: constant(inputs.tank_pressure),
         pump_flow: constant(inputs.pump_flow),
+        oil_temperature: constant(inputs.oil_temperature),
     }
 }
 

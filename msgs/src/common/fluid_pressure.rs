@@ -1,4 +1,4 @@
-//! `sensor_msgs/FluidPressure`.
+//! `sensor_msgs/FluidPressure`, and the array of them that excavators with OPERA's interface send.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,4 +17,15 @@ pub struct FluidPressure {
 
 impl Message for FluidPressure {
     const TYPE_NAME: &'static str = "sensor_msgs/msg/FluidPressure";
+}
+
+/// Several pressure sensors, each named by its frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FluidPressureArray {
+    /// The sensors.
+    pub array: Vec<FluidPressure>,
+}
+
+impl Message for FluidPressureArray {
+    const TYPE_NAME: &'static str = "com3_msgs/msg/FluidPressureArray";
 }

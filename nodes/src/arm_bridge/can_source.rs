@@ -44,7 +44,7 @@ impl CanSource {
             }
             places.push(place);
         }
-        let wanted = Wanted { places };
+        let wanted = Wanted::new(places);
         let input = match (&can.device, &can.log) {
             (Some(name), _) => Input::Device(Device::open(name, &wanted)?),
             (None, Some(log)) => Input::Log(Log::open(log, can.channel.clone())?, can.pace),
@@ -65,7 +65,9 @@ impl CanSource {
         let outcome = match input {
             Input::Device(device) => {
                 device.listen(stop, counts, |frame, at| {
-                    wanted.read(&frame, counts, |index, value| lock(publisher.signals).take(first + index, value, at));
+                    wanted.read(&frame, at, counts, |index, value| {
+                        lock(publisher.signals).take(first + index, value, at)
+                    });
                 });
                 Ok(())
             }
@@ -113,7 +115,7 @@ fn follow(
         }
         frames += 1;
         // As on a bus, a frame has arrived when it was due, not when this thread woke up.
-        wanted.read(&logged.frame, counts, |index, value| lock(signals).take(first + index, value, due));
+        wanted.read(&logged.frame, due, counts, |index, value| lock(signals).take(first + index, value, due));
     }
     Ok(frames)
 }
@@ -149,7 +151,7 @@ fn convert(
             break;
         }
         let at = start + logged.elapsed;
-        wanted.read(&logged.frame, counts, |index, value| lock(publisher.signals).take(first + index, value, at));
+        wanted.read(&logged.frame, at, counts, |index, value| lock(publisher.signals).take(first + index, value, at));
     }
     Ok(round)
 }

@@ -224,6 +224,9 @@ pub(super) struct TopicSource {
     /// Field of a joint state.
     #[serde(default)]
     pub field: JointField,
+    /// Element of an array: the frame of a pressure, or the label of a dimension.
+    #[serde(default)]
+    pub name: String,
     /// What becomes of the value.
     #[serde(flatten)]
     pub treatment: Treatment,
@@ -237,6 +240,10 @@ pub(super) enum TopicKind {
     JointState,
     /// `sensor_msgs/msg/FluidPressure`.
     FluidPressure,
+    /// `com3_msgs/msg/FluidPressureArray`.
+    FluidPressureArray,
+    /// `std_msgs/msg/Float64MultiArray`, in which each dimension labels a number.
+    LabelledNumbers,
 }
 
 /// Fields of a joint state.

@@ -34,7 +34,7 @@
 //!
 //! [[topics]]                         # topics of other nodes
 //! topic = "/joint_states"
-//! kind = "joint_state"               # or "fluid_pressure"
+//! kind = "joint_state"               # or "fluid_pressure"; "fluid_pressure_array" and "labelled_numbers" with a name
 //! joint = "arm_joint"                # which entry of a joint state
 //! field = "position"                 # position, velocity or effort
 //! signal = "arm.joint_angle"

@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use excavator_msgs::common::{FluidPressure, JointState};
+use excavator_msgs::Time;
+use excavator_msgs::common::{Float64MultiArray, FluidPressure, FluidPressureArray, JointState};
 
 #[cfg(feature = "can")]
 use super::can_source::CanSource;
@@ -23,6 +24,8 @@ use excavator_ros::{Health, Lifecycle, Parameter, RosArguments, RosError, Superv
 const GLANCE: Duration = Duration::from_millis(100);
 /// Time for readers to discover the bridge, and to receive the last messages, if the bridge ends by itself.
 const ACQUAINTANCE: Duration = Duration::from_secs(1);
+/// Largest age of a message by its stamp, ns. A stamp that is older, or in the future, is of another clock.
+const OLDEST: i64 = 1_000_000_000;
 
 /// All parameters, with defaults.
 pub fn parameters() -> Vec<Parameter> {
@@ -125,6 +128,8 @@ fn subscribe(
     signals: &Arc<Mutex<Signals>>,
 ) -> Result<(), RosError> {
     let signals = Arc::clone(signals);
+    let clock = supervisor.clock.clone();
+    let measured = move |stamp: Time, at: Instant| measured(stamp.nanoseconds(), clock.nanoseconds(), at);
     // A best-effort reader matches every publisher, and an old value is of no use.
     let qos = TopicQos::best_effort(10);
     match source.kind {
@@ -138,15 +143,55 @@ fn subscribe(
                 };
                 let position = state.name.iter().position(|name| *name == joint);
                 if let Some(value) = position.and_then(|position| values.get(position)) {
-                    lock(&signals).take(index, *value, received.at);
+                    lock(&signals).take(index, *value, measured(state.header.stamp, received.at));
                 }
             })?;
         }
         TopicKind::FluidPressure => {
             supervisor.link.subscribe(&source.topic, qos, move |state: FluidPressure, received| {
-                lock(&signals).take(index, state.fluid_pressure, received.at);
+                lock(&signals).take(index, state.fluid_pressure, measured(state.header.stamp, received.at));
+            })?;
+        }
+        TopicKind::FluidPressureArray => {
+            let name = source.name.clone();
+            supervisor.link.subscribe(&source.topic, qos, move |state: FluidPressureArray, received| {
+                if let Some(own) = state.array.iter().find(|own| own.header.frame_id == name) {
+                    lock(&signals).take(index, own.fluid_pressure, measured(own.header.stamp, received.at));
+                }
+            })?;
+        }
+        TopicKind::LabelledNumbers => {
+            let name = source.name.clone();
+            supervisor.link.subscribe(&source.topic, qos, move |state: Float64MultiArray, received| {
+                let place = state.layout.dim.iter().position(|dimension| dimension.label == name);
+                if let Some(value) = place.and_then(|place| state.data.get(place)) {
+                    lock(&signals).take(index, *value, received.at);
+                }
             })?;
         }
     }
     Ok(())
+}
+
+/// When a message that came `at` was measured: at its stamp, where that is on the clock of this node (`now`, ns), else when it came.
+fn measured(stamp: i64, now: i64, at: Instant) -> Instant {
+    match u64::try_from(now.saturating_sub(stamp)) {
+        Ok(age) if stamp > 0 && age <= OLDEST as u64 => at.checked_sub(Duration::from_nanos(age)).unwrap_or(at),
+        _ => at,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stamps_of_the_same_clock_are_kept() {
+        let at = Instant::now();
+        let now = 1_790_000_000_000_000_000;
+        assert_eq!(measured(now - 30_000_000, now, at), at - Duration::from_millis(30));
+        for stamp in [0, now + 1, now - 2 * OLDEST, 5_000_000_000] {
+            assert_eq!(measured(stamp, now, at), at, "{stamp}");
+        }
+    }
 }

@@ -31,6 +31,8 @@ pub(super) struct Refused {
     pub datagrams: AtomicU64,
     /// Datagrams of senders that the description does not name.
     pub strangers: AtomicU64,
+    /// Datagrams of a second sender where the description names none.
+    pub others: AtomicU64,
     /// Datagrams whose sequence number was a duplicate, or older than the newest.
     pub repeated: AtomicU64,
     /// Sequence numbers that never arrived.
@@ -140,18 +142,26 @@ impl Publisher<'_> {
         values.push(("refused datagrams", count(&self.refused.datagrams)));
         if self.has_datagrams {
             values.push(("datagrams of other senders", count(&self.refused.strangers)));
+            values.push(("datagrams of a second sender", count(&self.refused.others)));
             values.push(("repeated or old datagrams", count(&self.refused.repeated)));
             values.push(("missing datagrams", count(&self.refused.missing)));
         }
         if self.has_frames {
             let frames = &self.refused.frames;
+            values.push(("frames of a second sender", count(&frames.others)));
             values.push(("short frames", count(&frames.short)));
             values.push(("error and remote frames", count(&frames.without_data)));
             values.push(("unreadable lines", count(&frames.unreadable)));
         }
         values.push(("refused states", self.states.refused().to_string()));
         let names: Vec<&str> = words.iter().map(|(name, _)| name.as_str()).collect();
+        let second = self.refused.others.load(Ordering::Relaxed) + self.refused.frames.others.load(Ordering::Relaxed);
         let (health, message) = match names.as_slice() {
+            [] if second > 0 => {
+                let text =
+                    format!("two senders of one source: the first is used, {second} messages of others are left out");
+                (Health::Warning, text)
+            }
             [] => (Health::Ok, "all signals are measured".to_string()),
             names => (Health::Warning, format!("not measured: {}", names.join(", "))),
         };

@@ -90,6 +90,8 @@ pub enum Verb {
     Characterise(CharacteriseArguments),
     /// Where the energy went, and whether the model's ledger closes: H, dH/dt, losses by effect, pump line.
     Energy(EnergyArguments),
+    /// What changed in a machine, as after a repair: its parameters before and after, with intervals.
+    Changed(ChangedArguments),
     /// Find out which physical effect the model is missing.
     Diagnose(DiagnoseArguments),
     /// Propose laws outside the catalogue, as formulas, for the physics that a model is missing.

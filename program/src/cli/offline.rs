@@ -144,6 +144,27 @@ pub struct CharacteriseArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct ChangedArguments {
+    #[command(flatten)]
+    pub model: ModelChoice,
+    /// Recordings before; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub before: Vec<PathBuf>,
+    /// Recordings after.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub after: Vec<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    #[command(flatten)]
+    pub extent: Extent,
+    /// Write a page with what changed and what did not.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub result: ResultFile,
+}
+
+#[derive(Debug, Args)]
 pub struct EnergyArguments {
     #[command(flatten)]
     pub model: ModelChoice,
@@ -210,11 +231,11 @@ pub struct ModelCheckArguments {
 pub struct InfoArguments {
     /// Bag, or a table with a map.
     pub bag: PathBuf,
-    /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    /// Topic map (TOML), or `opera`; without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
-    /// Namespace of the machine, for a bag of our own topics that has several.
-    #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
+    /// Namespace of the machine, for a bag of our own topics, or of OPERA's, that has several.
+    #[arg(long, value_name = "NAMESPACE")]
     pub namespace: Option<String>,
     #[command(flatten)]
     pub result: ResultFile,
@@ -226,7 +247,7 @@ pub struct ImportArguments {
     /// one after the other.
     #[arg(required = true, value_name = "DATA")]
     pub data: Vec<PathBuf>,
-    /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    /// Topic map (TOML), or `opera`; without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
     /// Table that was recorded beside DATA: its columns are available to the map, at the times of DATA. Repeat it for several.

@@ -44,12 +44,13 @@ impl ResultFile {
 
 #[derive(Debug, Default, Clone, Args)]
 pub struct Mapping {
-    /// Topic map (TOML): which field of which topic, or which column of a table, is which signal. Without, the map.toml
-    /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
+    /// Topic map (TOML): which field of which topic, or which column of a table, is which signal; or `opera`, for excavators with the
+    /// interface OPERA (COM3 frames or its topics). Without, the map.toml in the bag's folder or FILE.map.toml beside the file is used, if
+    /// there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
-    /// Namespace of the machine, for a bag of our own topics that has several.
-    #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
+    /// Namespace of the machine, for a bag of our own topics, or of OPERA's, that has several.
+    #[arg(long, value_name = "NAMESPACE")]
     pub namespace: Option<String>,
     /// Use a recording although this check refuses it; the refusal says its name. Repeat it for several.
     #[arg(long, value_name = "CHECK", value_parser = PossibleValuesParser::new(OVERRULABLE), hide_possible_values = true)]

@@ -47,6 +47,7 @@ pub fn write(path: &Path, text: &str, overwriting: Overwriting) -> Result<(), Ve
         Ok(_) => {
             // Syncing the folder makes the rename durable. Not every file system supports it, and the file is already complete.
             let _ = File::open(folder).and_then(|folder| folder.sync_all());
+            terminal::remark(&format!("written: {}", path.display()));
             Ok(())
         }
         Err(failed) if failed.error.kind() == ErrorKind::AlreadyExists => match failed.file.keep() {

@@ -13,9 +13,9 @@ pub use paragraph::{command, filled};
 pub use printing::{all_was_printed, print, print_detail, print_fitted, print_text};
 pub use progress::Progress;
 pub use tables::{
-    Stage, candidate_table, characterisation_table, comparison_table, correlation_table, effect_table, energy_table,
-    ledger_table, not_in_mean, opening_table, pair_table, parameter_table, phase_table, proposal_table, refusals,
-    remedy_lines, right, stage_table, table,
+    Stage, candidate_table, change_table, characterisation_table, comparison_table, correlation_table, effect_table,
+    energy_table, ledger_table, not_in_mean, opening_table, pair_table, parameter_table, phase_table, proposal_table,
+    refusals, remedy_lines, right, stage_table, table,
 };
 pub use text::{complain, printable, remark, text, width};
 pub use verbosity::Verbosity;

@@ -4,7 +4,7 @@
 //! leaves the program, and not at each place that puts a name into a sentence.
 
 use std::borrow::Cow;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 
 pub use rosbag2::printable;
 
@@ -35,14 +35,19 @@ pub fn text(text: &str) -> Cow<'_, str> {
 /// Prints the reason of a failure on standard error. The line is wrapped if standard error is a terminal. `excerpt` follows
 /// below unless it is empty: the faulty line of a file with a mark that has to stay under its position.
 pub fn complain(line: &str, excerpt: &str) {
-    eprintln!("{}", filled(&printable(line), width_of_errors()));
-    excerpt.lines().for_each(|line| eprintln!("{}", printable(line)));
+    to_errors(&filled(&printable(line), width_of_errors()));
+    excerpt.lines().for_each(|line| to_errors(&printable(line)));
+}
+
+/// Writes a line to standard error. If nobody reads it, the work goes on all the same.
+fn to_errors(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Prints a remark on standard error, unless `--quiet` is given.
 pub fn remark(line: &str) {
     if Verbosity::chosen() > Verbosity::Quiet {
-        eprintln!("{}", filled(&printable(line), width_of_errors()));
+        to_errors(&filled(&printable(line), width_of_errors()));
     }
 }
 

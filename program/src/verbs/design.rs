@@ -101,7 +101,7 @@ fn show_plan(plan: &Plan) {
 fn show_use(path: &Path, arguments: &DesignArguments) {
     print(&format!("The profile is in {}. Run it twice: one recording to fit, one to judge.", path.display()));
     let step = NextStep::new("make its commands a bag", "simulate").same_model(&arguments.model);
-    print_next(&step.path("--input", path).path("-o", Path::new("commands")));
+    print_next(&step.path("--input", path).new_file("-o", "commands"));
 }
 
 fn for_parameter(arguments: &DesignArguments, found: &Determined) -> Result<(), VerbError> {

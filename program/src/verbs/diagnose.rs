@@ -46,19 +46,17 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
 pub fn next(model: &ModelChoice, recordings: &Recordings, saved: Option<&Path>, diagnosis: &Diagnosis) -> NextStep {
     let same = |why: &str, verb: &str| NextStep::new(why, verb).same_model(model).recordings(recordings);
     match (diagnosis.verdict.kind, saved) {
-        (Kind::Unexplained, _) => {
-            same("look for a law of the missing physics", "propose").path("-o", Path::new("laws.toml"))
-        }
+        (Kind::Unexplained, _) => same("look for a law of the missing physics", "propose").new_file("-o", "laws.toml"),
         (Kind::Adequate, _) => {
             let step = NextStep::new("see where the energy goes", "energy").same_model(model);
             let bag = recordings.validation.first();
             bag.map_or(step.clone(), |bag| step.path("--bag", bag).mapping(&recordings.mapping))
         }
-        (Kind::MissingEffect, Some(saved)) => NextStep::new("add it to the model", "refine")
-            .path("--diagnosis", saved)
-            .path("-o", Path::new("refined.toml")),
+        (Kind::MissingEffect, Some(saved)) => {
+            NextStep::new("add it to the model", "refine").path("--diagnosis", saved).new_file("-o", "refined.toml")
+        }
         (Kind::MissingEffect, None) => {
-            same("add it to the model", "refine").word("--auto").path("-o", Path::new("refined.toml"))
+            same("add it to the model", "refine").word("--auto").new_file("-o", "refined.toml")
         }
     }
 }

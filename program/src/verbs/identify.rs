@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use excavator_identification::identify::Identified;
 use excavator_model::Model;
 use excavator_model::document::to_text;
@@ -11,7 +12,7 @@ use excavator_study::Study;
 use excavator_study::numbers::number;
 use excavator_study::sentences::{identification_sentence, profile_sentence};
 
-use crate::cli::IdentifyArguments;
+use crate::cli::{IdentifyArguments, Method};
 use crate::error::VerbError;
 use crate::files::{self, Inputs};
 use crate::next_step::{NextStep, print_next};
@@ -45,12 +46,19 @@ fn next(arguments: &IdentifyArguments) -> NextStep {
         Some(model) => NextStep::new("compare the identified model with a recording", "compare")
             .model(model, &arguments.model)
             .path("--bag", bag)
-            .mapping(&arguments.mapping),
+            .mapping(&arguments.mapping)
+            .extent(arguments.extent),
         None => {
             let step =
                 NextStep::new("keep the identified model", "identify").same_model(&arguments.model).word("--bag");
             let step = arguments.bag.iter().fold(step, |step, bag| step.word(bag.display().to_string()));
-            step.mapping(&arguments.mapping).path("-o", Path::new("identified.toml"))
+            let step = step.mapping(&arguments.mapping).extent(arguments.extent);
+            // Another method would keep other numbers than those on the screen.
+            let step = match arguments.method.to_possible_value() {
+                Some(method) if arguments.method != Method::Best => step.word("--method").word(method.get_name()),
+                _ => step,
+            };
+            step.new_file("-o", "identified.toml")
         }
     }
 }

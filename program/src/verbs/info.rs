@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use comfy_table::Cell;
-use excavator_bags::map::{Origin, TopicMap, read_signals};
+use excavator_bags::can::is_frame_log;
+use excavator_bags::map::{Dimension, Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
-use excavator_bags::{BagError, ColumnInfo, SignalsInfo, TableInfo, own_definitions};
+use excavator_bags::{BagError, ColumnInfo, MappedUnit, SignalsInfo, TableInfo, own_definitions};
 use excavator_model::display::PressureUnit;
 use excavator_model::document::{BUILT_IN, built_in};
 use excavator_study::numbers::number;
@@ -29,14 +30,15 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
     let inputs = Inputs::recordings([path], arguments.map.as_deref());
     files::check(&[arguments.result.output()], &inputs, arguments.result.overwriting)?;
-    if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
+    if DataTable::is_table(path) && !is_frame_log(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
     let origin = Origin { map: arguments.map.as_deref(), namespace: arguments.namespace.as_deref() };
     // Two passes over the bag, one per thread.
     let (bag, signals) = std::thread::scope(|scope| {
         let signals = scope.spawn(|| read_signals(path, origin));
-        let bag = (!DataTable::is_table(path)).then(|| info_with(path, own_definitions())).transpose();
+        let is_bag = !DataTable::is_table(path) && !is_frame_log(path);
+        let bag = is_bag.then(|| info_with(path, own_definitions())).transpose();
         (bag, signals.join())
     });
     let bag = bag?;
@@ -46,13 +48,14 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
             (Some(bag), _) => show_bag(bag),
             (None, Ok((signals, _))) => {
                 let (path, samples) = (path.display(), signals.samples);
-                print(&format!("The table {path} has {samples} samples in {:.2} s.", signals.duration));
+                let kind = if is_frame_log(arguments.bag.as_path()) { "log of CAN frames" } else { "table" };
+                print(&format!("The {kind} {path} has {samples} samples in {:.2} s.", signals.duration));
             }
             (None, Err(_)) => (),
         }
         match &signals {
             Ok((signals, report)) => {
-                show_signals(signals);
+                show_signals(signals, &report.mapped);
                 // Damage belongs to the bag, and has been reported already.
                 for note in report.notes.iter().chain(bag.is_none().then(|| report.problems()).iter().flatten()) {
                     print(&format!("note: {note}"));
@@ -124,7 +127,7 @@ fn is_foreign(error: &BagError) -> bool {
 /// The next command for foreign data, whose signals are unknown.
 fn guess(data: &Path) -> NextStep {
     let step = NextStep::new("let the program propose a map", "import").word("--guess");
-    step.word(data.display().to_string()).path("-o", Path::new("map.toml"))
+    step.word(data.display().to_string()).new_file("-o", "map.toml")
 }
 
 fn to_json(bag: Option<&BagInfo>, signals: &Result<&SignalsInfo, &BagError>) -> Result<Value, VerbError> {
@@ -235,15 +238,15 @@ fn next(arguments: &InfoArguments, signals: &SignalsInfo) -> NextStep {
             let step = step.path("--bag", &arguments.bag);
             arguments.map.iter().fold(step, |step, map| step.path("--map", map))
         }
-        None => NextStep::new("describe the machine", "model").word("new").path("-o", Path::new("machine.toml")),
+        None => NextStep::new("describe the machine", "model").word("new").new_file("-o", "machine.toml"),
     }
 }
 
-fn show_signals(signals: &SignalsInfo) {
+fn show_signals(signals: &SignalsInfo, mapped: &[MappedUnit]) {
     print(&format!("signals: {} samples in {:.2} s", signals.samples, signals.duration));
     let mut rows = table(&["signal", "from", "to", "unit", "not measured"]);
     for signal in &signals.measured {
-        let (factor, unit) = display_unit(&signal.name);
+        let (factor, unit) = display_unit(&signal.name, mapped);
         rows.add_row([
             Cell::new(&signal.name),
             right(number(factor * signal.least)),
@@ -263,8 +266,17 @@ fn show_signals(signals: &SignalsInfo) {
     }
 }
 
-/// Factor from SI, and the unit in which such a signal is displayed.
-fn display_unit(name: &str) -> (f64, &'static str) {
+/// Factor from SI, and the unit in which such a signal is displayed. The input of a valve has the unit that the map gives it.
+fn display_unit(name: &str, mapped: &[MappedUnit]) -> (f64, &'static str) {
+    let pressure = (PressureUnit::shown().factor(), PressureUnit::shown().symbol());
+    if name.ends_with(".orifice_area") || name.ends_with(".orifice_command") {
+        let given = mapped.iter().find(|mapped| mapped.signal.to_string() == name).map(|mapped| mapped.dimension);
+        match given {
+            None | Some(Dimension::Area) => {}
+            Some(Dimension::Pressure) => return pressure,
+            Some(other) => return (1.0, other.si_unit()),
+        }
+    }
     match name.rsplit('.').next().unwrap_or_default() {
         "displacement" => (1e3, "mm"),
         "velocity" => (1e3, "mm/s"),
@@ -273,7 +285,7 @@ fn display_unit(name: &str) -> (f64, &'static str) {
         "rod_force" => (1.0, "N"),
         "pump_flow" => (60_000.0, "l/min"),
         "oil_temperature" => (1.0, "degC"),
-        _ => (PressureUnit::shown().factor(), PressureUnit::shown().symbol()),
+        _ => pressure,
     }
 }
 

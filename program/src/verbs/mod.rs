@@ -1,5 +1,6 @@
 //! One file per verb.
 
+mod changed;
 mod characterise;
 mod check_effects;
 mod compare;
@@ -40,6 +41,7 @@ pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Characterise(arguments) => characterise::run(&arguments),
         Verb::Energy(arguments) => energy::run(&arguments),
+        Verb::Changed(arguments) => changed::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Propose(arguments) => propose::run(&arguments),
         Verb::Design(arguments) => design::run(&arguments),

@@ -1,7 +1,5 @@
 //! `excavator propose`
 
-use std::path::{Path, PathBuf};
-
 use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals};
 use excavator_model::Model;
 use excavator_report::proposal_sentence;
@@ -12,7 +10,7 @@ use crate::error::VerbError;
 use crate::files::{self, Inputs};
 use crate::next_step::{NextStep, print_next};
 use crate::sources;
-use crate::terminal::{Progress, print, proposal_table};
+use crate::terminal::{Progress, print, proposal_table, remark};
 
 pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     let outputs =
@@ -25,13 +23,14 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     let progress = Progress::new();
     let proposed = study.propose(&|what: &str, done: f64| progress.tell(what, done))?;
     drop(progress);
+    if let Some(path) = &arguments.output {
+        match proposed.file()? {
+            Some(laws) => files::write(path, &laws, arguments.result.overwriting)?,
+            None => remark(&format!("{} is not written: no law is proposed", path.display())),
+        }
+    }
     if arguments.result.is_shown() {
         show(arguments, &proposed.model, &proposed.found);
-    }
-    if let Some(path) = &arguments.output
-        && let Some(laws) = proposed.file()?
-    {
-        files::write(path, &laws, arguments.result.overwriting)?;
     }
     files::write_told(&proposed, arguments.report.as_deref(), &arguments.result)
 }
@@ -54,31 +53,28 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
         print(&format!("Predicted improvement lost without each variable: {}.", list(&found.survey.variables)));
     }
     let Some(first) = found.proposals.first() else { return };
-    let file = arguments.output.clone().unwrap_or_else(|| PathBuf::from("laws.toml"));
-    let name = |proposal: &Proposal| format!("{}@{}", proposal.text.name, proposal.place);
-    if arguments.output.is_none() {
+    let Some(file) = &arguments.output else {
         print_next(
             &NextStep::new("keep the laws", "propose")
                 .same_model(&arguments.model)
                 .recordings(&arguments.recordings)
-                .path("-o", &file),
+                .new_file("-o", "laws.toml"),
         );
         return;
-    }
+    };
+    let name = |proposal: &Proposal| format!("{}@{}", proposal.text.name, proposal.place);
     let with_laws =
-        |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).path("--catalogue", &file);
-    print_next(
-        &with_laws("add the first law", "refine")
-            .word("--add")
-            .word(name(first))
-            .recordings(&arguments.recordings)
-            .path("-o", Path::new("refined.toml")),
-    );
+        |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).path("--catalogue", file);
+    let why =
+        if first.beside.is_empty() { "add the first law" } else { "add the first law and what it needs beside it" };
+    // Effects that the hypothesis of the law has besides are added first, as in the fit of its numbers.
+    let step = first.beside.iter().fold(with_laws(why, "refine").word("--add"), |step, other| step.word(other));
+    print_next(&step.word(name(first)).recordings(&arguments.recordings).new_file("-o", "refined.toml"));
     let tied: Vec<String> = found.proposals.iter().filter(|one| one.is_in_set).map(name).take(MOST_TIED).collect();
     if found.kind == ProposalVerdict::Law && found.diagnosis.verdict.set.len() > 1 {
         let step =
             with_laws("or design a manoeuvre that separates them", "design").word("--between").word(tied.join(","));
-        print_next(&step.path("-o", Path::new("profile.toml")));
+        print_next(&step.new_file("-o", "profile.toml"));
     }
 }
 

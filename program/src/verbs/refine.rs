@@ -12,7 +12,7 @@ use super::saved_study;
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
 use crate::files::{self, Inputs, write_json};
-use crate::next_step::{NextStep, print_next};
+use crate::next_step::{NextStep, free, print_next};
 use crate::sources;
 use crate::terminal::{Progress, Stage, parameter_table, print, remedy_lines, stage_table};
 
@@ -78,13 +78,13 @@ fn as_diagnosed(
     Ok(diagnosed.refine(&fitted_to)?)
 }
 
-/// Prints where the model is, and the next command.
+/// Prints the next command.
 fn end(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) {
-    print(&format!("written: {}", arguments.output.display()));
     if let Some(bag) = recordings.validation.first() {
         let step = NextStep::new("see every signal of the refined model", "compare").model(&arguments.output, choice);
         let page = arguments.output.with_extension("html");
-        print_next(&step.path("--bag", bag).mapping(&recordings.mapping).path("--report", &page));
+        let step = step.path("--bag", bag).mapping(&recordings.mapping).extent(recordings.extent);
+        print_next(&step.path("--report", &free(&page)));
     }
 }
 

@@ -115,7 +115,9 @@ fn the_null_of_a_crane_is_read() {
     close(&valve["dead_zones"][1]["value"], 0.827, 0.15);
     close(&valve["gains"][0]["value"], 3.028e-7, 0.03);
     close(&valve["gains"][1]["value"], 3.377e-7, 0.03);
-    close(&valve["compensator_margin"]["value"], 1.2e6, 0.1);
+    close(&valve["compensator_margin"]["value"], 1.2e6, 0.03);
+    // The pump of this bench does not fall below 15 bar: lowering gets a larger drop than lifting.
+    close(&valve["standby_pressure"]["value"], 1.5e6, 0.05);
 }
 
 /// Displacement and leakage of a pump that drives a cylinder.

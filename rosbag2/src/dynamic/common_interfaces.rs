@@ -2,7 +2,7 @@
 //! are left out.
 
 /// Name as `package/Type` and fields.
-pub(super) const TEXTS: [(&str, &str); 58] = [
+pub(super) const TEXTS: [(&str, &str); 59] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec"),
     ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec"),
     ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id"),
@@ -51,6 +51,7 @@ pub(super) const TEXTS: [(&str, &str); 58] = [
         "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort",
     ),
     ("sensor_msgs/FluidPressure", "std_msgs/Header header\nfloat64 fluid_pressure\nfloat64 variance"),
+    ("com3_msgs/FluidPressureArray", "sensor_msgs/FluidPressure[] array"),
     ("sensor_msgs/Temperature", "std_msgs/Header header\nfloat64 temperature\nfloat64 variance"),
     ("sensor_msgs/RelativeHumidity", "std_msgs/Header header\nfloat64 relative_humidity\nfloat64 variance"),
     ("sensor_msgs/Joy", "std_msgs/Header header\nfloat32[] axes\nint32[] buttons"),

@@ -13,7 +13,8 @@ pub enum Index {
     /// By number, from 0.
     Number(usize),
     /// `[key=value]`: the element whose field `key` is the text `value`. If the array has a sibling list of texts
-    /// `key`, the element at the position of `value` in that list (as in `sensor_msgs/JointState`).
+    /// `key`, the element at the position of `value` in that list (as in `sensor_msgs/JointState`). The key may lead into
+    /// structs: `array[header.frame_id=arm]`, `data[layout.dim.label=arm]`.
     Named {
         /// Name of the field.
         key: String,

@@ -39,12 +39,12 @@ fn walk(
     for member in &structure.members {
         let count = cursor.count(member.count)?;
         let listed = count.min(ELEMENT_LIMIT);
+        let indices = match member.count {
+            Count::One => Vec::new(),
+            _ => addresses(layout, &member.kind, count, *cursor, &beside)?,
+        };
         for element in 0..listed {
-            let index = match member.count {
-                Count::One => None,
-                _ => Some(index_of(layout, &member.kind, element, count, *cursor, &beside)?),
-            };
-            way.push(Step { field: member.name.clone(), index });
+            way.push(Step { field: member.name.clone(), index: indices.get(element).cloned() });
             match &member.kind {
                 Kind::Struct(inner) => walk(layout, *inner, cursor, way, leaves)?,
                 kind => {
@@ -61,49 +61,98 @@ fn walk(
     Ok(())
 }
 
-/// The text lists among the members of the struct at `cursor`, with their names.
+/// The text lists among the members of the struct at `cursor` with their keys, and the labels of a multi-array.
 fn lists_of_names(layout: &Layout, number: usize, mut cursor: Cursor) -> Result<Vec<(String, Vec<String>)>, CdrError> {
     let mut lists = Vec::new();
     for member in layout.structure(number).map_or(&[][..], |structure| &structure.members) {
-        let count = cursor.count(member.count)?;
-        if member.kind != Kind::Text || member.count == Count::One {
-            cursor.skip(layout, &member.kind, count)?;
-            continue;
-        }
-        let mut names = Vec::new();
-        for place in 0..count {
-            let text = cursor.text()?;
-            if place < ELEMENT_LIMIT {
-                names.push(String::from_utf8_lossy(text).into_owned());
+        match (&member.kind, member.count) {
+            (Kind::Struct(inner), Count::One) if member.name == "layout" => {
+                let mut inside = cursor;
+                let members = layout.structure(*inner).map_or(&[][..], |structure| &structure.members);
+                if let Some(dim) = members.iter().position(|member| member.name == "dim" && member.count != Count::One)
+                {
+                    inside.skip_members(layout, *inner, dim)?;
+                    let count = inside.count(members[dim].count)?;
+                    let labels = texts_within(layout, &members[dim].kind, &["label"], count, inside)?;
+                    lists.extend(labels.map(|labels| ("layout.dim.label".to_string(), labels)));
+                }
+                cursor.skip(layout, &member.kind, 1)?;
+            }
+            (Kind::Text, count) if count != Count::One => {
+                let count = cursor.count(count)?;
+                let mut names = Vec::new();
+                for place in 0..count {
+                    let text = cursor.text()?;
+                    if place < ELEMENT_LIMIT {
+                        names.push(String::from_utf8_lossy(text).into_owned());
+                    }
+                }
+                lists.push((member.name.clone(), names));
+            }
+            (kind, count) => {
+                let count = cursor.count(count)?;
+                cursor.skip(layout, kind, count)?;
             }
         }
-        lists.push((member.name.clone(), names));
     }
     Ok(lists)
 }
 
-/// The best address of an element: its own name, the sibling list of names, otherwise its index.
-fn index_of(
+/// Texts inside the elements at `cursor`, at most 16; `None` if the elements have no such member.
+fn texts_within(
     layout: &Layout,
     kind: &Kind,
-    element: usize,
+    way: &[&str],
     count: usize,
     mut cursor: Cursor,
+) -> Result<Option<Vec<String>>, CdrError> {
+    let mut texts = Vec::new();
+    for _ in 0..count.min(ELEMENT_LIMIT) {
+        let (mut inside, mut here) = (cursor, kind);
+        for name in way {
+            let Kind::Struct(number) = *here else { return Ok(None) };
+            let members = layout.structure(number).map_or(&[][..], |structure| &structure.members);
+            let found = members.iter().position(|member| member.name == *name && member.count == Count::One);
+            let Some(index) = found else { return Ok(None) };
+            inside.skip_members(layout, number, index)?;
+            here = &members[index].kind;
+        }
+        if *here != Kind::Text {
+            return Ok(None);
+        }
+        texts.push(String::from_utf8_lossy(inside.text()?).into_owned());
+        cursor.skip(layout, kind, 1)?;
+    }
+    Ok(Some(texts))
+}
+
+/// Ways to the name of an element.
+const NAMES_WITHIN: [&[&str]; 5] = [&["name"], &["id"], &["label"], &["frame_id"], &["header", "frame_id"]];
+
+/// For each element of the array at `cursor`, its best address: its own name, the sibling list of names, otherwise its index. Names
+/// that several elements share are none.
+fn addresses(
+    layout: &Layout,
+    kind: &Kind,
+    count: usize,
+    cursor: Cursor,
     beside: &[(String, Vec<String>)],
-) -> Result<Index, CdrError> {
-    if let Kind::Struct(number) = *kind {
-        let members = layout.structure(number).map_or(&[][..], |structure| &structure.members);
-        let is_name = |name: &str| ["name", "id", "label", "frame_id"].contains(&name);
-        let own = members.iter().position(|m| m.kind == Kind::Text && m.count == Count::One && is_name(&m.name));
-        if let Some(member) = own {
-            cursor.skip_members(layout, number, member)?;
-            let value = String::from_utf8_lossy(cursor.text()?).into_owned();
-            return Ok(addressable(&members[member].name, &value).unwrap_or(Index::Number(element)));
+) -> Result<Vec<Index>, CdrError> {
+    let listed = count.min(ELEMENT_LIMIT);
+    let mut found: Option<(String, Vec<String>)> = None;
+    for way in NAMES_WITHIN.into_iter().filter(|_| matches!(kind, Kind::Struct(_))) {
+        if found.is_none() {
+            found = texts_within(layout, kind, way, count, cursor)?.map(|names| (way.join("."), names));
         }
     }
-    let list = beside.iter().find(|(_, names)| names.len() == count.min(ELEMENT_LIMIT));
-    let named = list.and_then(|(key, names)| addressable(key, names.get(element)?));
-    Ok(named.unwrap_or(Index::Number(element)))
+    let found = found.or_else(|| beside.iter().find(|(_, names)| names.len() == listed).cloned());
+    let (key, names) = found.unwrap_or_default();
+    let is_single = |name: &String| names.iter().filter(|other| *other == name).count() == 1;
+    let address = |element: usize| {
+        let name = names.get(element).filter(|name| is_single(name));
+        name.and_then(|name| addressable(&key, name)).unwrap_or(Index::Number(element))
+    };
+    Ok((0..listed).map(address).collect())
 }
 
 /// `[key=value]`; `None` if the value cannot be written in that form.

@@ -4,7 +4,7 @@ use super::cursor::Cursor;
 use super::defined_member::Count;
 use super::error::PathError;
 use super::field_path::{FieldPath, Index};
-use super::layout::{Kind, Layout, Member, Primitive, StructLayout};
+use super::layout::{Kind, Layout, Member, Primitive};
 use crate::cdr::CdrError;
 
 /// As in [`cdr::decode`](crate::cdr::decode): the rest must be padding.
@@ -15,10 +15,10 @@ const NANOSECONDS_PER_SECOND: i64 = 1_000_000_000;
 enum ResolvedIndex {
     Single,
     Number(usize),
-    /// Position of the text in the sibling list that is the member with this index.
-    Beside(usize, String),
-    /// The element whose member with this index equals the text.
-    Within(usize, String),
+    /// Position of the text in a list of the same struct, by the members that lead to it.
+    Beside(Vec<usize>, String),
+    /// The element in which these members lead to the text.
+    Within(Vec<usize>, String),
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -107,10 +107,11 @@ impl Selector {
         let mut steps = Vec::new();
         let mut kind = Kind::Struct(0);
         for step in path.steps() {
-            let structure = match &kind {
-                Kind::Struct(number) => layout.structure(*number),
+            let own = match &kind {
+                Kind::Struct(number) => Some(*number),
                 _ => None,
             };
+            let structure = own.and_then(|number| layout.structure(number));
             let members = structure.map_or(&[][..], |structure| &structure.members);
             let Some(member) = members.iter().position(|member| member.name == step.field) else {
                 return Err(PathError::NoField {
@@ -125,7 +126,7 @@ impl Selector {
                 (None, _) => return Err(PathError::NeedsIndex { field: step.field.clone() }),
                 (Some(_), Count::One) => return Err(PathError::NotAnArray { field: step.field.clone() }),
                 (Some(Index::Number(number)), _) => ResolvedIndex::Number(*number),
-                (Some(Index::Named { key, value }), _) => named(layout, structure, found, key, value)?,
+                (Some(Index::Named { key, value }), _) => named(layout, own.unwrap_or_default(), found, key, value)?,
             };
             kind = found.kind.clone();
             steps.push(ResolvedStep { member, index });
@@ -172,8 +173,8 @@ impl Selector {
             let wanted = match &step.index {
                 ResolvedIndex::Single => Some(0),
                 ResolvedIndex::Number(index) => Some(*index),
-                ResolvedIndex::Beside(list, text) => place_in_list(layout, number, *list, start, text)?,
-                ResolvedIndex::Within(key, text) => place_of_element(layout, &member.kind, *key, count, cursor, text)?,
+                ResolvedIndex::Beside(list, text) => place_in_list(layout, number, list, start, text)?,
+                ResolvedIndex::Within(key, text) => place_of_element(layout, &member.kind, key, count, cursor, text)?,
             };
             let Some(wanted) = wanted.filter(|&wanted| wanted < count) else {
                 return Ok(None);
@@ -188,66 +189,84 @@ impl Selector {
 }
 
 /// How `[key=value]` finds its element in this type.
-fn named(
-    layout: &Layout,
-    structure: Option<&StructLayout>,
-    array: &Member,
-    key: &str,
-    value: &str,
-) -> Result<ResolvedIndex, PathError> {
-    let is_text = |member: &Member, single: bool| {
-        member.name == key && member.kind == Kind::Text && (member.count == Count::One) == single
-    };
-    if let Kind::Struct(number) = array.kind {
-        let members = layout.structure(number).map_or(&[][..], |element| &element.members);
-        if let Some(member) = members.iter().position(|member| is_text(member, true)) {
-            return Ok(ResolvedIndex::Within(member, value.to_string()));
-        }
+fn named(layout: &Layout, own: usize, array: &Member, key: &str, value: &str) -> Result<ResolvedIndex, PathError> {
+    if let Kind::Struct(number) = array.kind
+        && let Some(way) = way_to_text(layout, number, key, false)
+    {
+        return Ok(ResolvedIndex::Within(way, value.to_string()));
     }
-    let beside = structure.map_or(&[][..], |structure| &structure.members);
-    match beside.iter().position(|member| is_text(member, false)) {
-        Some(member) => Ok(ResolvedIndex::Beside(member, value.to_string())),
+    match way_to_text(layout, own, key, true) {
+        Some(way) => Ok(ResolvedIndex::Beside(way, value.to_string())),
         None => Err(PathError::NoKey { field: array.name.clone(), key: key.to_string() }),
     }
 }
 
-/// Position of a text in the list that is member `list` of the struct at `cursor`.
+/// The members that lead from a struct to a text, by a key such as `header.frame_id`. With `listed`, exactly one of them is an array.
+fn way_to_text(layout: &Layout, mut number: usize, key: &str, listed: bool) -> Option<Vec<usize>> {
+    let (mut way, mut lists) = (Vec::new(), 0);
+    let mut names = key.split('.').peekable();
+    while let Some(name) = names.next() {
+        let members = &layout.structure(number)?.members;
+        let index = members.iter().position(|member| member.name == name)?;
+        lists += usize::from(members[index].count != Count::One);
+        way.push(index);
+        match (&members[index].kind, names.peek()) {
+            (Kind::Text, None) => return (lists == usize::from(listed)).then_some(way),
+            (Kind::Struct(inner), Some(_)) => number = *inner,
+            _ => return None,
+        }
+    }
+    None
+}
+
+/// Position of a text in the list to which `way` leads from the struct at `cursor`.
 fn place_in_list(
     layout: &Layout,
-    number: usize,
-    list: usize,
+    mut number: usize,
+    way: &[usize],
     mut cursor: Cursor,
     text: &str,
 ) -> Result<Option<usize>, CdrError> {
-    let count = layout.structure(number).and_then(|s| s.members.get(list)).map_or(Count::One, |member| member.count);
-    cursor.skip_members(layout, number, list)?;
-    for place in 0..cursor.count(count)? {
-        if cursor.text()? == text.as_bytes() {
-            return Ok(Some(place));
+    for (step, &index) in way.iter().enumerate() {
+        let Some(member) = layout.structure(number).and_then(|structure| structure.members.get(index)) else {
+            return Ok(None);
+        };
+        cursor.skip_members(layout, number, index)?;
+        match (&member.kind, member.count) {
+            (Kind::Struct(inner), Count::One) => number = *inner,
+            (kind, count) => {
+                let count = cursor.count(count)?;
+                return place_of_element(layout, kind, &way[step + 1..], count, cursor, text);
+            }
         }
     }
     Ok(None)
 }
 
-/// Position of the element whose member `key` equals the text, among `count` at `cursor`.
+/// Position of the element in which `way` leads to the text, among `count` at `cursor`; without a way, elements are texts.
 fn place_of_element(
     layout: &Layout,
     kind: &Kind,
-    key: usize,
+    way: &[usize],
     count: usize,
     mut cursor: Cursor,
     text: &str,
 ) -> Result<Option<usize>, CdrError> {
-    let Kind::Struct(number) = *kind else {
-        return Ok(None);
-    };
     for place in 0..count {
         let mut inside = cursor;
-        inside.skip_members(layout, number, key)?;
+        let mut kind_here = kind;
+        for &index in way {
+            let Kind::Struct(number) = *kind_here else { return Ok(None) };
+            let Some(member) = layout.structure(number).and_then(|structure| structure.members.get(index)) else {
+                return Ok(None);
+            };
+            inside.skip_members(layout, number, index)?;
+            kind_here = &member.kind;
+        }
         if inside.text()? == text.as_bytes() {
             return Ok(Some(place));
         }
-        cursor.skip_struct(layout, number)?;
+        cursor.skip(layout, kind, 1)?;
     }
     Ok(None)
 }

@@ -1,5 +1,6 @@
 //! Results of the verbs: computed once, then presented as JSON, as a sentence and as a page.
 
+mod changed;
 mod characterised;
 mod compared;
 mod designed;
@@ -12,6 +13,7 @@ mod refined;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
+pub use changed::Changed;
 pub use characterised::Characterised;
 pub use compared::Compared;
 pub use designed::{DesignOrder, Determined, Separated};

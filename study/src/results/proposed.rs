@@ -3,7 +3,8 @@
 use excavator_identification::proposal::{Proposals, propose};
 use excavator_identification::results;
 use excavator_model::Model;
-use excavator_model::document::catalogue_text;
+use excavator_model::document::{catalogue_text, parse_catalogue};
+use excavator_model::formula::FormulaText;
 use excavator_report::{proposal_page, proposal_sentence};
 
 use super::{Outcome, Progress};
@@ -42,7 +43,13 @@ impl Outcome for Proposed {
     }
 
     fn file(&self) -> Result<Option<String>, WorkError> {
-        let laws = self.found.proposals.iter().map(|proposal| proposal.text.clone()).collect();
-        Ok(Some(catalogue_text(laws)?))
+        let laws: Vec<FormulaText> = self.found.proposals.iter().map(|proposal| proposal.text.clone()).collect();
+        if laws.is_empty() {
+            return Ok(None);
+        }
+        let text = catalogue_text(laws)?;
+        // A file that the next command refuses is not written: it is read first, beside the catalogue of the model.
+        parse_catalogue("the laws", &text, &self.model.catalogue)?;
+        Ok(Some(text))
     }
 }

@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
-use excavator_bags::can::Identifier;
-use socketcan::id::{CAN_EFF_FLAG, CAN_EFF_MASK, CAN_SFF_MASK};
+use excavator_bags::can::{Identifier, Place};
+use socketcan::id::{CAN_EFF_FLAG, CAN_SFF_MASK};
 use socketcan::{CanFdSocket, CanFilter, ShouldRetry, Socket, SocketOptions};
 
 use super::{Counts, Frame, Wanted};
@@ -28,7 +28,7 @@ impl Device {
     /// # Errors
     /// What is wrong, in one line.
     pub fn open(name: &str, wanted: &Wanted) -> Result<Self, String> {
-        let filters: Vec<CanFilter> = wanted.places.iter().map(|place| filter(place.identifier())).collect();
+        let filters: Vec<CanFilter> = wanted.places.iter().map(filter).collect();
         let socket = open(name, &filters).map_err(|error| format!("CAN device {name}: {error}"))?;
         Ok(Device { name: name.to_string(), filters, socket })
     }
@@ -64,10 +64,10 @@ fn open(name: &str, filters: &[CanFilter]) -> std::io::Result<CanFdSocket> {
     Ok(socket)
 }
 
-/// Accepts exactly one identifier.
-fn filter(identifier: Identifier) -> CanFilter {
-    match identifier {
-        Identifier { number, extended: true } => CanFilter::new(number | CAN_EFF_FLAG, CAN_EFF_MASK | CAN_EFF_FLAG),
+/// Accepts the frames that may carry a signal.
+fn filter(place: &Place) -> CanFilter {
+    match place.identifier() {
+        Identifier { number, extended: true } => CanFilter::new(number | CAN_EFF_FLAG, place.mask() | CAN_EFF_FLAG),
         Identifier { number, extended: false } => CanFilter::new(number, CAN_SFF_MASK | CAN_EFF_FLAG),
     }
 }
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_device_that_is_not_there_is_named() {
-        let refused = Device::open("nocan9", &Wanted { places: Vec::new() });
+        let refused = Device::open("nocan9", &Wanted::new(Vec::new()));
         assert!(refused.is_err_and(|reason| reason.starts_with("CAN device nocan9:")));
     }
 

@@ -1,71 +1,41 @@
 //! Prints the energy of a recording.
 
 use comfy_table::{Cell, Table};
-use excavator_identification::energy::{EnergyAnalysis, Totals};
+use excavator_identification::energy::{Budget, BudgetShare, EnergyAnalysis};
 use excavator_identification::results::ByOpening;
 use excavator_model::Model;
-use excavator_model::effects::ActsOn;
-use excavator_model::site_name;
+use excavator_report::{budget_label, delivered_by};
 use excavator_study::numbers::number;
 
 use super::{fixed, right, table};
 
-/// The flow of energy: over the recording, and per cycle if the work repeats.
+/// Where the delivered energy went, as one sum: over the recording, and per cycle if the work repeats.
 pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let mut rows = table(&["energy", "J", "%", "J per cycle"]);
-    let all = lines(model, &analysis.totals);
-    let cycle = analysis.cycle.as_ref().map(|cycle| (lines(model, &cycle.mean), lines(model, &cycle.deviation)));
-    let whole = input(model, &analysis.totals);
-    for (index, (name, energy, _)) in all.iter().enumerate() {
-        let per_cycle = cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?)));
+    let budget = analysis.budget(model);
+    let cycle = analysis.cycle.as_ref().map(|cycle| [&cycle.mean, &cycle.deviation].map(|one| Budget::of(model, one)));
+    let mut add = |name: String, energy: f64, per_cycle: Option<String>| {
         rows.add_row([
             Cell::new(name),
-            right(fixed(*energy, 1)),
-            right(fixed(100.0 * energy / whole, 1)),
-            right(per_cycle.map_or("-".into(), |(mean, deviation)| match deviation {
-                // The deviation of a sum or difference is not the sum or difference of the deviations, so it is not shown.
-                (_, _, true) => format!("{mean:.2}"),
-                (_, deviation, false) => format!("{mean:.2} ± {:.2}", deviation.abs()),
-            })),
+            right(fixed(energy, 1)),
+            right(fixed(100.0 * budget.share_of(energy), 1)),
+            right(per_cycle.unwrap_or_else(|| "-".to_string())),
         ]);
+    };
+    let delivered = cycle.as_ref().map(|[mean, _]| format!("{:.2}", mean.delivered));
+    add(format!("delivered by the {}", delivered_by(model)), budget.delivered, delivered);
+    for line in &budget.lines {
+        let per_cycle = cycle.as_ref().and_then(|[mean, deviation]| {
+            let mean = mean.find(line)?.energy;
+            // The deviation of a sum is not the sum of deviations, so stores and what is left have none.
+            Some(match (line.share, deviation.find(line)) {
+                (BudgetShare::Lost, Some(deviation)) => format!("{mean:.2} ± {:.2}", deviation.energy.abs()),
+                _ => format!("{mean:.2}"),
+            })
+        });
+        add(format!("  {}", budget_label(line)), line.energy, per_cycle);
     }
     rows
-}
-
-/// The energy that counts as 100 %: that of the pump, or the supplied energy if there is no pump.
-fn input(model: &Model, totals: &Totals) -> f64 {
-    let supplied = totals.cylinders.iter().map(|cylinder| cylinder.supplied.abs()).sum::<f64>();
-    if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) { totals.pump } else { supplied }
-}
-
-/// Label, energy in J, and whether the line is a sum or difference of others.
-fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
-    let mut lines = Vec::new();
-    if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
-        lines.push(("pump".to_string(), totals.pump, false));
-        for effect in
-            totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && e.has_power && e.into_pump_line != 0.0)
-        {
-            lines.push((format!("  lost: {} at the pump line", effect.effect), -effect.into_pump_line, false));
-        }
-        lines.push(("  stored in the pump line".to_string(), totals.pump_line, false));
-        lines.push(("  not explained in the pump line".to_string(), totals.pump_residual(), true));
-    }
-    for (index, (cylinder, own)) in model.machine.cylinders.iter().zip(&totals.cylinders).enumerate() {
-        let name = &cylinder.name;
-        if cylinder.chambers.is_some() {
-            lines.push((format!("  lost: metering at the {name} valve"), own.metering_loss, false));
-        }
-        lines.push((format!("supplied to the {name}"), own.supplied, false));
-        for effect in totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && e.has_power) {
-            if site_name(&model.machine, effect.site) == name {
-                lines.push((format!("  lost: {} at the {name}", effect.effect), -effect.into_cylinders, false));
-            }
-        }
-        lines.push((format!("  stored in the {name}"), own.stored(), true));
-        lines.push((format!("  not explained at the {name}"), totals.residual(index), true));
-    }
-    lines
 }
 
 /// Mean powers of each cylinder by the sign of its opening, two rows each.

@@ -1,10 +1,12 @@
 //! Results as tables.
 
+mod changes;
 mod characterisation;
 mod energy;
 mod pairs;
 mod proposals;
 
+pub use changes::change_table;
 pub use characterisation::{characterisation_table, refusals};
 pub use energy::{energy_table, ledger_table, opening_table};
 pub use pairs::pair_table;

@@ -1,0 +1,112 @@
+//! Friction that falls as the oil warms: a model with constant parameters is not called adequate, and the right law is named.
+
+use crate::common::{measure, off_the_data_sheet};
+use excavator_identification::change::changes;
+use excavator_identification::decision::{Kind, Reason};
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+use excavator_identification::fit::FitSettings;
+use excavator_model::Model;
+use excavator_model::document::{built_in, parse_catalogue};
+use excavator_model::effects::{Catalogue, Site};
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{Tolerances, simulate_from_rest};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// Friction that falls by half for every 14 K.
+const LAW: &str = r#"
+[[formula]]
+name = "cold_friction"
+acts_on = "piston_force"
+formula = "-k*sign(v)*exp(-b*(temperature - T0))"
+parameters.k = { unit = "N", minimum = 0.0, maximum = 1e5, start = [100.0] }
+parameters.b = { unit = "1/K", minimum = 0.0, maximum = 1.0, start = [0.02] }
+parameters.T0 = { unit = "degC", value = 40.0, known = true }
+"#;
+
+fn catalogue() -> Catalogue {
+    parse_catalogue("cold.toml", LAW, &Catalogue::built_in()).unwrap()
+}
+
+/// The arm with `friction` N of that law at 40 °C, steered by two sines while the oil warms by 40 K.
+fn warming(friction: f64, tempo: f64, seed: u64) -> Recording {
+    let machine = Model { catalogue: catalogue(), ..off_the_data_sheet("zx30u-arm", 0.1) };
+    let law = machine.catalogue.find("cold_friction").unwrap();
+    let mut machine = machine.with_effect(&law, Site::Cylinder(0)).unwrap();
+    for parameter in &mut machine.effects.last_mut().unwrap().parameters {
+        match &*parameter.card.name {
+            "k" => parameter.value = friction,
+            "b" => parameter.value = 0.05,
+            _ => {}
+        }
+    }
+    let time: Vec<f64> = (0..12_000).map(|index| f64::from(index) / 500.0).collect();
+    let mut recording = Recording::unmeasured("warming", time, &["arm"]);
+    recording.tank_pressure.fill(6e5);
+    recording.pump_flow.fill(3.8e-4);
+    recording.oil_temperature = recording.time.iter().map(|t| 20.0 + 40.0 * t / 24.0).collect();
+    let area = |t: f64| 6e-5 * (tempo * t).sin() + 4e-5 * (2.7 * tempo * t).sin();
+    recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
+    let mut seen = simulate_from_rest(&machine, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
+    seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
+    measure(&mut ChaCha8Rng::seed_from_u64(seed), &mut seen);
+    seen
+}
+
+fn diagnosed(model: &Model, friction: f64) -> Diagnosis {
+    let (fitted, judging) = (warming(friction, 2.9, 1), warming(friction, 3.4, 2));
+    diagnose(model, &[&fitted], &[&judging], &DiagnosisSettings::default(), &|_, _| {}).unwrap()
+}
+
+/// Largest fall of friction for which constant parameters leave little more than noise.
+const WEAK: f64 = 25.0;
+
+#[test]
+fn an_adequate_model_whose_friction_drifts_is_not_called_adequate() {
+    let found = diagnosed(&built_in("zx30u-arm").unwrap(), WEAK);
+    assert_eq!(found.verdict.kind, Kind::Unexplained, "{:?}", found.verdict.reasons);
+    assert!(matches!(found.verdict.reasons[0], Reason::ParametersDrift { .. }), "{:?}", found.verdict.reasons);
+    let first = &found.verdict.differing().unwrap()[0];
+    assert_eq!(first.name, "arm.coulomb_friction");
+    assert!(first.values[1] < 0.9 * first.values[0], "{:?}", first.values);
+}
+
+#[test]
+fn a_machine_that_stays_as_it_is_does_not_drift() {
+    let found = diagnosed(&built_in("zx30u-arm").unwrap(), 0.0);
+    assert_eq!(found.verdict.kind, Kind::Adequate, "{:?}", found.verdict.reasons);
+}
+
+#[test]
+fn a_repair_shows_in_its_parameter_alone() {
+    let leaking = |leakage: f64, tempo: f64, seed: u64| {
+        let mut machine = off_the_data_sheet("zx30u-arm", 0.1);
+        for parameter in machine.parameters_mut().filter(|one| one.card.name == "internal_leakage") {
+            parameter.value = leakage;
+        }
+        crate::common::steered(&machine, tempo, 24.0, seed)
+    };
+    // 2.4 l/min and 0.6 l/min at 100 bar.
+    let (before, after) = (leaking(4e-12, 2.9, 1), leaking(1e-12, 3.4, 2));
+    let found = changes(&built_in("zx30u-arm").unwrap(), &[&before], &[&after], &FitSettings::default()).unwrap();
+    let changed: Vec<&str> = found.changed().map(|one| one.name.as_str()).collect();
+    assert_eq!(changed, ["arm.internal_leakage"]);
+    let leakage = found.changed().next().unwrap();
+    for (value, truth) in leakage.values.iter().zip([4e-12, 1e-12]) {
+        assert!((value - truth).abs() < 2e-13, "{value} {truth}");
+    }
+    assert_eq!(found.leaves_more_than_noise(), [false, false]);
+}
+
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    #[test]
+    fn the_law_of_the_temperature_is_named() {
+        let model = Model { catalogue: catalogue(), ..built_in("zx30u-arm").unwrap() };
+        let found = diagnosed(&model, 400.0);
+        let names: Vec<&str> = found.selected().iter().map(|one| one.name()).collect();
+        assert_eq!((found.verdict.kind, &names[..]), (Kind::MissingEffect, &["cold_friction"][..]));
+    }
+}
