@@ -151,7 +151,7 @@ fn standby_pressure(stretches: &[(&Track, Steady)], drops: [Estimate; 2]) -> Opt
     let retracts = apart > 0.0;
     let low = load(retracts);
     let drop = drops[usize::from(retracts)];
-    (low < load(!retracts)).then(|| (retracts, Estimate { value: drop.value + low, ..drop }))
+    (low < load(!retracts)).then_some((retracts, Estimate { value: drop.value + low, ..drop }))
 }
 
 /// What the edges that the pump feeds tell alone.

@@ -53,6 +53,7 @@ impl PhaseCriterion {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
