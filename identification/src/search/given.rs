@@ -25,11 +25,13 @@ pub(super) struct First {
     pub is_trusted: bool,
 }
 
-/// Fits a model's unknown parameters and its nuisances, starting from a regression if one is possible.
+/// Fits a model's unknown parameters and its nuisances, starting from a regression if one is possible. Inertias and bulk moduli stay
+/// within what the given values allow.
 ///
 /// # Errors
 /// [`FitError`].
 pub(crate) fn fit_given(model: &Model, identification: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
+    let model = &model.clone().with_limits_around_given();
     let First { fit: first, is_trusted } = first_fit(model, identification, settings)?;
     let second = if is_trusted { None } else { second_fit(model, identification, settings, first.loss()) };
     Ok(second.unwrap_or(first))

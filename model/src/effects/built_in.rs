@@ -42,6 +42,7 @@ pub(super) fn built_in() -> Vec<AnyEffect> {
         Arc::new(valve_lag::ValveLag),
         Arc::new(load_check_valve::LoadCheckValve),
         Arc::new(make_up_valve::MakeUpValve),
+        Arc::new(matched_pump_flow::MatchedPumpFlow),
         Arc::new(hose_loss::HoseLoss),
         Arc::new(hose_pressure_loss::HosePressureLoss),
         Arc::new(entrained_air::EntrainedAir),

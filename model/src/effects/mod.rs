@@ -42,6 +42,7 @@ mod joint_spring;
 mod load_check_valve;
 mod load_sensing_pump;
 mod make_up_valve;
+mod matched_pump_flow;
 mod oil_compressibility;
 mod open_centre_bypass;
 mod opening_scale;

@@ -174,3 +174,44 @@ fn a_positioner_is_predicted_from_its_reference() {
         complaint(&said)
     );
 }
+
+/// `tests/run --all` runs these: a minute of computing each.
+mod full {
+    use super::*;
+
+    /// What `start` says of a bench from its tables and sheet.
+    fn said(name: &str, tables: &[&str]) -> Option<String> {
+        let bench = bench(name)?;
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| bench.join(name).to_str().unwrap().to_string();
+        let (tables, sheet): (Vec<String>, String) = (tables.iter().map(|one| path(one)).collect(), path("sheet.toml"));
+        let mut words = vec!["start"];
+        words.extend(tables.iter().map(String::as_str));
+        words.extend(["--sheet", &sheet]);
+        let output = excavator(folder.path(), &words);
+        assert!(output.status.success(), "{}", complaint(&output));
+        Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    }
+
+    /// The row of an effect in the table of candidates.
+    fn row<'s>(said: &'s str, effect: &str) -> &'s str {
+        said.lines()
+            .find(|line| line.starts_with(&format!("│ {effect} ")))
+            .unwrap_or_else(|| panic!("{effect}: {said}"))
+    }
+
+    /// Of null, dead zones, compensator and lag, steady stretches read all but the lag.
+    #[test]
+    fn the_lag_of_a_cranes_valve_is_named() {
+        let Some(said) = said("crane", &["lift1.csv", "lift2.csv"]) else { return };
+        assert!(row(&said, "valve_lag").contains("selected"), "{said}");
+    }
+
+    /// The rod side of this drive gets what its area asks for, which the model of a single pump does not have.
+    #[test]
+    fn the_matched_flows_of_a_pump_drive_are_named() {
+        let Some(said) = said("pump-drive", &["day1.csv", "day2.csv"]) else { return };
+        assert!(row(&said, "matched_pump_flow").contains("selected"), "{said}");
+        assert!(row(&said, "valve_lag").contains("selected"), "{said}");
+    }
+}
