@@ -16,8 +16,10 @@ fn halves(bag: &Path, duration: f64) -> [String; 2] {
     if is_part {
         return [bag.display().to_string(), "ANOTHER_BAG".to_string()];
     }
-    let middle = (duration / 2.0).round();
-    [format!("{}@..{middle}", bag.display()), format!("{}@{middle}..", bag.display())]
+    // Two digits of short recordings, whole seconds of long ones.
+    let middle = duration / 2.0;
+    let decimals = (1.0 - middle.log10().floor()).clamp(0.0, 6.0) as usize;
+    [format!("{}@..{middle:.decimals$}", bag.display()), format!("{}@{middle:.decimals$}..", bag.display())]
 }
 
 /// A command under construction.

@@ -6,6 +6,7 @@ use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
 use excavator_identification::energy::{EnergyAnalysis, MissingPower};
 use excavator_identification::fit::ProfileInterval;
 use excavator_identification::identify::{HeldOut, Identified};
+use excavator_model::effects::Family;
 use excavator_model::simulation::Profile;
 use excavator_model::{Model, Parameter};
 use excavator_report::budget_sentence;
@@ -23,8 +24,14 @@ pub fn identification_sentence(result: &Identified) -> String {
         let margin = parameter.margin_95.filter(|margin| margin.is_finite() && parameter.value != 0.0)?;
         Some((margin / parameter.value.abs(), names[index].as_str()))
     };
-    let parameters = result.model.parameters().map(|(_, parameter)| parameter).enumerate();
-    let fitted = parameters.filter(|(index, _)| result.fitted.contains(index));
+    // Nuisances scatter around zero, where a share of the value says nothing.
+    let is_nuisance = |effect: usize| {
+        matches!(result.model.effects[effect].physics.card().family, Family::Recording | Family::Rounding)
+    };
+    let parameters = result.model.parameters().enumerate();
+    let fitted = parameters
+        .filter(|(index, (effect, _))| result.fitted.contains(index) && !is_nuisance(*effect))
+        .map(|(index, (_, parameter))| (index, parameter));
     let widest = fitted.filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0));
     let mut text = format!("Identified {} of {asked} unknown parameters of {machine}.", result.fitted.len());
     if let Some((share, name)) = widest {

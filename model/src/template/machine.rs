@@ -108,6 +108,12 @@ const LINE_TIME: f64 = 0.32;
 
 fn actuator(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
     match sheet.actuator {
+        Actuator::Motor { .. } if matches!(sheet.drive, DriveKind::Force | DriveKind::ImposedMotion) => {
+            Err(MissingFromDataSheet {
+                what: "a cylinder, since motors are driven by oil; an axis with a measured torque is a cylinder in other units: \
+                       1 rad as 1 m, 1 N m as 1 N, 1 kg m2 as 1 kg (--cylinder and --mass)",
+            })
+        }
         Actuator::Motor { displacement, ratio } => {
             let unit = if matches!(sheet.load, Load::Mass { .. }) { "rad/m" } else { "-" };
             let estimated = [MOTOR_TURNS * std::f64::consts::TAU * displacement; 2];
