@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
 use excavator_identification::energy::{EnergyAnalysis, MissingPower};
-use excavator_identification::fit::ProfileInterval;
+use excavator_identification::fit::{ProfileInterval, is_nuisance};
 use excavator_identification::identify::{HeldOut, Identified};
-use excavator_model::effects::Family;
 use excavator_model::simulation::Profile;
 use excavator_model::{Model, Parameter};
 use excavator_report::budget_sentence;
@@ -25,12 +24,10 @@ pub fn identification_sentence(result: &Identified) -> String {
         Some((margin / parameter.value.abs(), names[index].as_str()))
     };
     // Nuisances scatter around zero, where a share of the value says nothing.
-    let is_nuisance = |effect: usize| {
-        matches!(result.model.effects[effect].physics.card().family, Family::Recording | Family::Rounding)
-    };
+    let is_of_the_machine = |effect: usize| !is_nuisance(result.model.effects[effect].physics.card().family);
     let parameters = result.model.parameters().enumerate();
     let fitted = parameters
-        .filter(|(index, (effect, _))| result.fitted.contains(index) && !is_nuisance(*effect))
+        .filter(|(index, (effect, _))| result.fitted.contains(index) && is_of_the_machine(*effect))
         .map(|(index, (_, parameter))| (index, parameter));
     let widest = fitted.filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0));
     let mut text = format!("Identified {} of {asked} unknown parameters of {machine}.", result.fitted.len());
