@@ -51,7 +51,7 @@ impl<'m> Input<'m> {
         mapped_unit(self.signal?, conversion)
     }
 
-    /// What its values measure; `None` for a constant, and for a name without unit.
+    /// What its values measure; `None` for a constant of the map, and for a name without unit.
     fn dimension(&self) -> Option<Dimension> {
         let (_, conversion) = self.wanted.as_ref()?;
         match self.signal {
@@ -138,13 +138,17 @@ pub(super) fn assemble(
     let mut dimensions: Vec<(String, Option<Dimension>)> = Vec::new();
     for input in inputs {
         let (label, signal, dimension) = (input.label.clone(), input.signal, input.dimension());
+        // A constant of the map is no reading.
+        let is_read = input.wanted.is_some();
         let is_used = is_used(&label);
         report.mapped.extend(input.mapped());
         if signal.is_none() && !is_used {
             continue;
         }
         let values = input.on(&stamps, clock_name, report)?;
-        dimensions.push((label.clone(), dimension));
+        if is_read {
+            dimensions.push((label.clone(), dimension));
+        }
         if is_used {
             used.push((label, values.clone()));
         }
