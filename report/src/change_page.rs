@@ -1,6 +1,6 @@
 //! What changed in a machine: one page to show to a colleague.
 
-use excavator_identification::change::{Changes, ParameterChange};
+use excavator_identification::change::{Changes, LEAST_CHANGE, LEAST_SIGNIFICANCE, ParameterChange};
 use excavator_model::Model;
 use maud::{Markup, html};
 
@@ -17,13 +17,10 @@ pub fn change_page(model: &Model, changes: &Changes) -> String {
             @for one in changes.changed().take(3) { (tile(&relative_change(one), &one.name)) }
         }
     };
-    let some = |is_wanted: &dyn Fn(&ParameterChange) -> bool| -> Vec<&ParameterChange> {
-        changes.parameters.iter().filter(|one| is_wanted(one)).collect()
-    };
-    let parts = [
-        ("changed", "Changed", some(&|one| one.has_changed)),
-        ("unchanged", "Unchanged", some(&|one| one.is_determined && !one.has_changed)),
-        ("undetermined", "Not determined on both sides", some(&|one| !one.is_determined)),
+    let parts: [(_, _, Vec<&ParameterChange>); 3] = [
+        ("changed", "Changed", changes.changed().collect()),
+        ("unchanged", "Unchanged", changes.unchanged().collect()),
+        ("undetermined", "Not determined on both sides", changes.undetermined().collect()),
     ];
     let sections: Vec<Section> = parts
         .into_iter()
@@ -49,8 +46,9 @@ fn table(parameters: &[&ParameterChange]) -> Markup {
             } } }
         } }
         p.note {
-            "The model is fitted to the recordings before and to those after, each alone. A parameter changed if the difference exceeds four "
-            "of its standard errors and 5 % of its value. Offsets of sensors are fitted on both sides and not compared."
+            "The model is fitted to the recordings before and to those after, each alone. A parameter changed if the difference exceeds "
+            (LEAST_SIGNIFICANCE) " of its standard errors and " (100.0 * LEAST_CHANGE) " % of its value. Offsets of sensors are fitted on "
+            "both sides and not compared."
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Says what changed in a machine, in the words and units of a workshop.
 
-use excavator_identification::change::{Changes, ParameterChange};
+use excavator_identification::change::{Changes, LEAST_CHANGE, ParameterChange};
 use excavator_model::Model;
 use excavator_model::display::PressureUnit;
 
@@ -52,10 +52,10 @@ pub(super) fn change_of([before, after]: [f64; 2]) -> String {
     format!("{sign}{}", percent(((after - before) / before).abs()))
 }
 
-/// The place and the meaning of a parameter: "leakage coefficient at the arm".
-pub fn spoken_parameter(one: &ParameterChange) -> String {
-    let place = one.name.split_once('.').map_or("", |(place, _)| place);
-    format!("{} at the {place}", one.meaning)
+/// Meaning and place of the parameter with this contract name: "leakage coefficient at the arm".
+pub(super) fn spoken(meaning: &str, name: &str) -> String {
+    let place = name.split_once('.').map_or("", |(place, _)| place);
+    format!("{meaning} at the {place}")
 }
 
 /// What changed, what did not, and whether the model still explains both sides.
@@ -66,23 +66,20 @@ pub fn change_sentence(model: &Model, changes: &Changes) -> String {
         .map(|one| {
             format!(
                 "{}: {} before, {} after ({})",
-                spoken_parameter(one),
+                spoken(&one.meaning, &one.name),
                 workshop_value(one, 0),
                 workshop_value(one, 1),
                 relative_change(one)
             )
         })
         .collect();
-    let same: Vec<String> = changes
-        .parameters
-        .iter()
-        .filter(|one| one.is_determined && !one.has_changed)
-        .map(|one| one.name.clone())
-        .collect();
-    let unknown: Vec<String> =
-        changes.parameters.iter().filter(|one| !one.is_determined).map(|one| one.name.clone()).collect();
+    let same: Vec<String> = changes.unchanged().map(|one| one.name.clone()).collect();
+    let unknown: Vec<String> = changes.undetermined().map(|one| one.name.clone()).collect();
     let mut sentences = vec![match changed.as_slice() {
-        [] => format!("No parameter of {machine} changed by more than its uncertainty and by 5 %."),
+        [] => {
+            let least = 100.0 * LEAST_CHANGE;
+            format!("No parameter of {machine} changed by more than its uncertainty and by {least:.0} %.")
+        }
         some => format!("Changed in {machine}: {}.", some.join("; ")),
     }];
     if !same.is_empty() {

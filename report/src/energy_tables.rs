@@ -1,6 +1,6 @@
 //! Tables of energies and of the ledger.
 
-use excavator_identification::energy::{Budget, BudgetShare, EnergyAnalysis, MissingPower, Regime};
+use excavator_identification::energy::{EnergyAnalysis, MissingPower, Regime};
 use excavator_identification::results::ByOpening;
 use excavator_model::Model;
 use maud::{Markup, html};
@@ -12,7 +12,7 @@ use super::words;
 /// Energies over the recording and per cycle: one sum.
 pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     let budget = analysis.budget(model);
-    let cycle = analysis.cycle.as_ref().map(|cycle| [&cycle.mean, &cycle.deviation].map(|one| Budget::of(model, one)));
+    let cycle = analysis.cycle_budget(model);
     let numbers = |energy: f64| {
         html! {
             td.n { (significant(energy, 4)) }
@@ -29,15 +29,15 @@ pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
             tbody {
                 tr.group {
                     td { "delivered by the " (delivered_by(model)) } (numbers(budget.delivered))
-                    @if let Some([mean, _]) = &cycle { td.n { (significant(mean.delivered, 3)) } }
+                    @if let Some(cycle) = &cycle { td.n { (significant(cycle.mean.delivered, 3)) } }
                 }
                 @for line in &budget.lines { tr {
                     td { (budget_label(line)) } (numbers(line.energy))
-                    @if let Some([mean, deviation]) = &cycle { td.n {
-                        (mean.find(line).map_or(NOTHING.to_string(), |own| significant(own.energy, 3)))
-                        // The deviation of a sum is not the sum of deviations, so stores and what is left have none.
-                        @if let (BudgetShare::Lost, Some(own)) = (line.share, deviation.find(line)) {
-                            " ± " (significant(own.energy.abs(), 2))
+                    @if let Some(cycle) = &cycle { td.n {
+                        @match cycle.line(line) {
+                            Some((mean, Some(deviation))) => { (significant(mean, 3)) " ± " (significant(deviation, 2)) },
+                            Some((mean, None)) => { (significant(mean, 3)) },
+                            None => { (NOTHING) },
                         }
                     } }
                 } }

@@ -28,7 +28,7 @@ pub fn budget_label(line: &BudgetLine) -> String {
 pub fn budget_sentence(model: &Model, analysis: &EnergyAnalysis) -> String {
     let budget = analysis.budget(model);
     let (left, explicable) = (budget.unexplained(), analysis.explicable());
-    let within = if left.abs() <= explicable { "no more than" } else { "more than" };
+    let within = if analysis.is_within_noise(&budget) { "no more than" } else { "more than" };
     format!(
         "Of {} J from the {}, {} J ({}) are not explained: {within} the {} J that noise, uncertain parameters and smoothing can leave.",
         significant(budget.delivered, 4),

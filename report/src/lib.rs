@@ -49,7 +49,7 @@ mod tests;
 
 pub use assets::{KINEMATICS, plotting};
 pub use change_page::change_page;
-pub use change_text::{change_sentence, relative_change, spoken_parameter, workshop_value};
+pub use change_text::{change_sentence, relative_change, workshop_value};
 pub use characterisation_page::{characterisation_page, leakage_unit};
 pub use comparison_page::{Beside, comparison_page};
 pub use comparison_text::{comparison_sentence, others_sentence};

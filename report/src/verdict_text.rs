@@ -7,7 +7,7 @@ use excavator_identification::search::Trial;
 use excavator_model::effects::Finding;
 use excavator_model::{Model, site_name};
 
-use super::change_text::change_of;
+use super::change_text::{change_of, spoken};
 use super::numbers::{change_of_error, percent};
 use super::plausibility_text::implausible_sentence;
 use super::words;
@@ -163,10 +163,8 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
 /// Parameters that drift over the recordings, or differ between their roles.
 fn differing(machine: &str, diagnosis: &Diagnosis) -> Option<String> {
     let named = |parameters: &[Differing]| {
-        let each = parameters.iter().map(|one| {
-            let place = one.name.split_once('.').map_or("", |(place, _)| place);
-            format!("{} at the {place} {}", one.meaning, change_of(one.values))
-        });
+        let each =
+            parameters.iter().map(|one| format!("{} {}", spoken(&one.meaning, &one.name), change_of(one.values)));
         words::list(&each.collect::<Vec<_>>(), "and")
     };
     match diagnosis.verdict.reasons.first()? {

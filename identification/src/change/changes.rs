@@ -9,10 +9,10 @@ use crate::search::fit_given;
 
 /// Standard errors of a difference from which it counts: with twenty parameters, chance makes one such change in a thousand
 /// comparisons.
-const LEAST_SIGNIFICANCE: f64 = 4.0;
+pub const LEAST_SIGNIFICANCE: f64 = 4.0;
 
 /// Smallest change that counts, relative to the larger of both values: sensors and oil of one machine differ by less on the same day.
-const LEAST_CHANGE: f64 = 0.05;
+pub const LEAST_CHANGE: f64 = 0.05;
 
 /// The same model, fitted to recordings before and to recordings after.
 #[derive(Debug, Clone)]
@@ -138,5 +138,15 @@ impl Changes {
     /// The parameters that changed, the most significant first.
     pub fn changed(&self) -> impl Iterator<Item = &ParameterChange> {
         self.parameters.iter().filter(|parameter| parameter.has_changed)
+    }
+
+    /// The parameters that both sides determine and that did not change.
+    pub fn unchanged(&self) -> impl Iterator<Item = &ParameterChange> {
+        self.parameters.iter().filter(|parameter| parameter.is_determined && !parameter.has_changed)
+    }
+
+    /// The parameters that one side or both do not determine.
+    pub fn undetermined(&self) -> impl Iterator<Item = &ParameterChange> {
+        self.parameters.iter().filter(|parameter| !parameter.is_determined)
     }
 }

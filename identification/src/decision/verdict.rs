@@ -147,6 +147,16 @@ pub enum Reason {
     },
 }
 
+impl Reason {
+    /// The parameters that differ, if they are the reason.
+    pub fn differing(&self) -> Option<&[Differing]> {
+        match self {
+            Reason::ParametersDrift { parameters } | Reason::MachineDiffers { parameters } => Some(parameters),
+            _ => None,
+        }
+    }
+}
+
 /// A parameter with two values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Differing {
@@ -166,12 +176,7 @@ impl Verdict {
     /// The parameters that drift over the recordings, or differ between those that were fitted and those that judge, if that is the
     /// reason of the verdict.
     pub fn differing(&self) -> Option<&[Differing]> {
-        self.reasons.iter().find_map(|reason| match reason {
-            Reason::ParametersDrift { parameters } | Reason::MachineDiffers { parameters } => {
-                Some(parameters.as_slice())
-            }
-            _ => None,
-        })
+        self.reasons.iter().find_map(Reason::differing)
     }
 
     /// Whether a structural alternative forbids an attribution.

@@ -86,7 +86,7 @@ impl Budget {
     }
 
     /// The line of the same share, effect or store, and place as `other`.
-    pub fn find(&self, other: &BudgetLine) -> Option<&BudgetLine> {
+    fn find(&self, other: &BudgetLine) -> Option<&BudgetLine> {
         let is_same =
             |line: &&BudgetLine| (line.share, &line.what, &line.place) == (other.share, &other.what, &other.place);
         self.lines.iter().find(is_same)
@@ -100,6 +100,23 @@ impl Budget {
     /// Part of the delivered energy, a pure number.
     pub fn share_of(&self, energy: f64) -> f64 {
         energy / self.delivered.abs()
+    }
+}
+
+/// The sum of a mean cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleBudget {
+    /// Of the mean cycle.
+    pub mean: Budget,
+    deviation: Budget,
+}
+
+impl CycleBudget {
+    /// Energy of a line in the mean cycle, and its standard deviation over cycles, J. The deviation of a sum is not the sum of
+    /// deviations, so stores and what is left have none.
+    pub fn line(&self, line: &BudgetLine) -> Option<(f64, Option<f64>)> {
+        let deviation = self.deviation.find(line).filter(|_| line.share == BudgetShare::Lost);
+        Some((self.mean.find(line)?.energy, deviation.map(|one| one.energy.abs())))
     }
 }
 
@@ -117,6 +134,18 @@ impl EnergyAnalysis {
             .iter()
             .filter_map(|place| place.regimes.iter().find(|judged| matches!(judged.regime, Regime::Always)));
         always.map(|judged| judged.band).filter(|band| band.is_finite()).sum::<f64>() * self.totals.duration
+    }
+
+    /// Whether what a sum leaves unexplained over the whole recording is within that.
+    pub fn is_within_noise(&self, budget: &Budget) -> bool {
+        budget.unexplained().abs() <= self.explicable()
+    }
+
+    /// The sum of a mean cycle, and that of the standard deviations over cycles, if the work repeats.
+    pub fn cycle_budget(&self, model: &Model) -> Option<CycleBudget> {
+        let cycle = self.cycle.as_ref()?;
+        let [mean, deviation] = [&cycle.mean, &cycle.deviation].map(|one| Budget::of(model, one));
+        Some(CycleBudget { mean, deviation })
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) use smoothing::Parabola;
 pub use analyser::{Analyser, analyse};
 pub use analysis::{Cycle, EnergyAnalysis, PhaseDelays, PumpLine, Section, WindowPoint};
 pub use books::{Books, CylinderBooks, EffectBooks};
-pub use budget::{Budget, BudgetLine, BudgetShare};
+pub use budget::{Budget, BudgetLine, BudgetShare, CycleBudget};
 pub use by_opening::ByOpening;
 pub use error::EnergyError;
 pub use judgement::{PlaceJudgement, RegimeJudgement};

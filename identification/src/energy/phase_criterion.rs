@@ -27,14 +27,14 @@ pub struct PhaseCriterion {
 impl PhaseCriterion {
     /// Of the lags of all cylinders. `None` if there are none, because no frequency stands out.
     pub(super) fn of<'a>(delays: impl Iterator<Item = &'a PhaseDelays>) -> Option<Self> {
-        let lags: Vec<Option<f64>> = delays.flat_map(|one| one.all()).collect();
-        if lags.is_empty() {
+        let delays: Vec<&PhaseDelays> = delays.collect();
+        if delays.is_empty() {
             return None;
         }
-        let largest = lags.iter().flatten().map(|lag| lag.abs()).max_by(f64::total_cmp);
+        let largest = delays.iter().filter_map(|one| one.largest()).max_by(f64::total_cmp);
         let met = match largest {
             Some(largest) if largest >= LIMIT_DEGREES => Some(false),
-            Some(_) if lags.iter().all(Option::is_some) => Some(true),
+            Some(_) if delays.iter().flat_map(|one| one.all()).all(|lag| lag.is_some()) => Some(true),
             _ => None,
         };
         let sentence = match (met, largest) {

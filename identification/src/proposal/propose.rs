@@ -62,10 +62,7 @@ pub fn propose(
         let situations = situations_of(trial, identification);
         laws_dissipate(trial, &situations) && !reverses_an_opening(trial, &situations)
     };
-    let differing = verdict
-        .reasons
-        .into_iter()
-        .find(|reason| matches!(reason, Reason::ParametersDrift { .. } | Reason::MachineDiffers { .. }));
+    let differing = verdict.reasons.into_iter().find(|reason| reason.differing().is_some());
     let mut verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
     if kind == ProposalVerdict::NoLaw
         && let Some(reason) = differing

@@ -49,20 +49,17 @@ pub struct ChangedParameter {
 impl Change {
     /// Of a comparison.
     pub fn of(changes: &Changes) -> Self {
-        let some = |is_wanted: &dyn Fn(&ParameterChange) -> bool| {
-            changes.parameters.iter().filter(|one| is_wanted(one)).map(ChangedParameter::of).collect()
-        };
         Change {
-            changed: some(&|one| one.has_changed),
-            unchanged: some(&|one| one.is_determined && !one.has_changed),
-            undetermined: some(&|one| !one.is_determined),
+            changed: changes.changed().map(ChangedParameter::of).collect(),
+            unchanged: changes.unchanged().map(ChangedParameter::of).collect(),
+            undetermined: changes.undetermined().map(ChangedParameter::of).collect(),
             log_error_ratios: [&changes.before, &changes.after].map(|fit| finite(fit.loss())),
         }
     }
 }
 
 impl ChangedParameter {
-    pub(super) fn of(one: &ParameterChange) -> Self {
+    fn of(one: &ParameterChange) -> Self {
         ChangedParameter {
             name: one.name.clone(),
             unit: one.unit.clone(),

@@ -49,7 +49,7 @@ impl EnergyBudget {
             delivered: finite(budget.delivered),
             lines: budget.lines.iter().map(line).collect(),
             explicable: finite(analysis.explicable()),
-            is_within_noise: budget.unexplained().abs() <= analysis.explicable(),
+            is_within_noise: analysis.is_within_noise(&budget),
         }
     }
 }

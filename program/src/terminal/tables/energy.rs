@@ -1,7 +1,7 @@
 //! Prints the energy of a recording.
 
 use comfy_table::{Cell, Table};
-use excavator_identification::energy::{Budget, BudgetShare, EnergyAnalysis};
+use excavator_identification::energy::EnergyAnalysis;
 use excavator_identification::results::ByOpening;
 use excavator_model::Model;
 use excavator_report::{budget_label, delivered_by};
@@ -13,7 +13,7 @@ use super::{fixed, right, table};
 pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let mut rows = table(&["energy", "J", "%", "J per cycle"]);
     let budget = analysis.budget(model);
-    let cycle = analysis.cycle.as_ref().map(|cycle| [&cycle.mean, &cycle.deviation].map(|one| Budget::of(model, one)));
+    let cycle = analysis.cycle_budget(model);
     let mut add = |name: String, energy: f64, per_cycle: Option<String>| {
         rows.add_row([
             Cell::new(name),
@@ -22,16 +22,12 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
             right(per_cycle.unwrap_or_else(|| "-".to_string())),
         ]);
     };
-    let delivered = cycle.as_ref().map(|[mean, _]| format!("{:.2}", mean.delivered));
+    let delivered = cycle.as_ref().map(|cycle| format!("{:.2}", cycle.mean.delivered));
     add(format!("delivered by the {}", delivered_by(model)), budget.delivered, delivered);
     for line in &budget.lines {
-        let per_cycle = cycle.as_ref().and_then(|[mean, deviation]| {
-            let mean = mean.find(line)?.energy;
-            // The deviation of a sum is not the sum of deviations, so stores and what is left have none.
-            Some(match (line.share, deviation.find(line)) {
-                (BudgetShare::Lost, Some(deviation)) => format!("{mean:.2} ± {:.2}", deviation.energy.abs()),
-                _ => format!("{mean:.2}"),
-            })
+        let per_cycle = cycle.as_ref().and_then(|cycle| cycle.line(line)).map(|(mean, deviation)| match deviation {
+            Some(deviation) => format!("{mean:.2} ± {deviation:.2}"),
+            None => format!("{mean:.2}"),
         });
         add(format!("  {}", budget_label(line)), line.energy, per_cycle);
     }
