@@ -1,24 +1,10 @@
 //! CAN frames in bags, read with a DBC file.
 
-use crate::support;
+use crate::support::{self, Frame};
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::{TopicMap, guess, read_mapped};
-use excavator_msgs::Header;
 use rosbag2::{BagWriter, TopicToWrite, WriteOptions, cdr};
-use serde::Serialize;
-
-/// `can_msgs/msg/Frame`.
-#[derive(Serialize)]
-struct Frame {
-    header: Header,
-    id: u32,
-    is_rtr: bool,
-    is_extended: bool,
-    is_error: bool,
-    dlc: u8,
-    data: [u8; 8],
-}
 
 const MS: i64 = 1_000_000;
 const START: i64 = 1_790_000_000_000_000_000;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use crate::support::header;
+use crate::support::{Frame, header};
 use excavator_bags::ReadReport;
 use excavator_bags::map::{OPERA, Origin, read_recording_or_mapped};
 use excavator_model::document::built_in;
@@ -91,17 +91,6 @@ fn frames(shot: &Shot, index: usize) -> Vec<(u32, [u8; 8])> {
         all.push((0x18ff_84e8, [0, 0, 0, 145, 0, 0, 0, 0]));
     }
     all
-}
-
-#[derive(Serialize)]
-struct Frame {
-    header: Header,
-    id: u32,
-    is_rtr: bool,
-    is_extended: bool,
-    is_error: bool,
-    dlc: u8,
-    data: [u8; 8],
 }
 
 #[derive(Serialize)]

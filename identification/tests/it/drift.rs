@@ -1,6 +1,6 @@
 //! Friction that falls as the oil warms: a model with constant parameters is not called adequate, and the right law is named.
 
-use crate::common::{measure, off_the_data_sheet};
+use crate::common::{off_the_data_sheet, seen, steered, steering};
 use excavator_identification::change::changes;
 use excavator_identification::decision::{Kind, Reason};
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
@@ -9,9 +9,6 @@ use excavator_model::Model;
 use excavator_model::document::{built_in, parse_catalogue};
 use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{Tolerances, simulate_from_rest};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 /// Friction that falls by half for every 14 K.
 const LAW: &str = r#"
@@ -40,17 +37,9 @@ fn warming(friction: f64, tempo: f64, seed: u64) -> Recording {
             _ => {}
         }
     }
-    let time: Vec<f64> = (0..12_000).map(|index| f64::from(index) / 500.0).collect();
-    let mut recording = Recording::unmeasured("warming", time, &["arm"]);
-    recording.tank_pressure.fill(6e5);
-    recording.pump_flow.fill(3.8e-4);
+    let mut recording = steering(tempo, 24.0);
     recording.oil_temperature = recording.time.iter().map(|t| 20.0 + 40.0 * t / 24.0).collect();
-    let area = |t: f64| 6e-5 * (tempo * t).sin() + 4e-5 * (2.7 * tempo * t).sin();
-    recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
-    let mut seen = simulate_from_rest(&machine, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
-    seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
-    measure(&mut ChaCha8Rng::seed_from_u64(seed), &mut seen);
-    seen
+    seen(&machine, &recording, seed)
 }
 
 fn diagnosed(model: &Model, friction: f64) -> Diagnosis {
@@ -84,7 +73,7 @@ fn a_repair_shows_in_its_parameter_alone() {
         for parameter in machine.parameters_mut().filter(|one| one.card.name == "internal_leakage") {
             parameter.value = leakage;
         }
-        crate::common::steered(&machine, tempo, 24.0, seed)
+        steered(&machine, tempo, 24.0, seed)
     };
     // 2.4 l/min and 0.6 l/min at 100 bar.
     let (before, after) = (leaking(4e-12, 2.9, 1), leaking(1e-12, 3.4, 2));

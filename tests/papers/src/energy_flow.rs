@@ -3,7 +3,7 @@
 use excavator_identification::energy::{CylinderTraces, EnergyAnalysis, EnergySettings, analyse};
 use excavator_identification::results::{ByOpening, MeanPowers};
 
-use crate::experiment::{Sine, nominal, read};
+use crate::experiment::{Sine, figure, nominal, read};
 
 const PRESSURE_NOISE: f64 = 2e3;
 const SEED: u64 = 7;
@@ -55,13 +55,7 @@ fn trace(analysis: &EnergyAnalysis) -> &CylinderTraces {
 }
 
 fn watts(value: f64) -> String {
-    let decimals = if value.abs() < 9.95 { 1 } else { 0 };
-    let text = format!("{value:.decimals$}");
-    if text.trim_start_matches('-').chars().all(|one| matches!(one, '0' | '.')) {
-        text.trim_start_matches('-').to_string()
-    } else {
-        text
-    }
+    figure(value, false)
 }
 
 fn asymmetry(trace: &CylinderTraces) -> f64 {

@@ -107,6 +107,14 @@ fn read_with(recording: &Recording, [displacement, pressure, opening]: [f64; 3],
     recording
 }
 
+/// A number with one decimal below ten and none above; a zero has no sign.
+pub fn figure(value: f64, has_sign: bool) -> String {
+    let decimals = if value.abs() < 9.95 { 1 } else { 0 };
+    let text = if has_sign { format!("{value:+.decimals$}") } else { format!("{value:.decimals$}") };
+    let size = text.trim_start_matches(['+', '-']);
+    if size.chars().all(|one| matches!(one, '0' | '.')) { size.to_string() } else { text }
+}
+
 /// Mean of numbers.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64

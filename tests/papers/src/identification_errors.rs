@@ -6,7 +6,7 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
-use crate::experiment::{SEEDS, Sine, mean, nominal, off_by, read};
+use crate::experiment::{SEEDS, Sine, figure, mean, nominal, off_by, read};
 
 /// Noise of pressures, Pa.
 const LEVELS: [f64; 2] = [2e3, 2e4];
@@ -67,13 +67,7 @@ fn cell(values: &[f64]) -> String {
 }
 
 fn percent(value: f64) -> String {
-    let decimals = if value.abs() < 9.95 { 1 } else { 0 };
-    let text = format!("{value:+.decimals$}");
-    if text.trim_start_matches(['+', '-']).chars().all(|one| matches!(one, '0' | '.')) {
-        text.trim_start_matches(['+', '-']).to_string()
-    } else {
-        text
-    }
+    figure(value, true)
 }
 
 /// The table of errors.

@@ -8,9 +8,22 @@ use excavator_bags::{Topics, topic_to_write, write_recording};
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, Time};
 use rosbag2::{BagWriter, Compression, Qos, RawMessages, WriteOptions, cdr};
+use serde::Serialize;
 
 /// Start of all made-up recordings, ns since the epoch.
 pub const START: i64 = 1_790_000_000_000_024_320;
+
+/// `can_msgs/msg/Frame`.
+#[derive(Serialize)]
+pub struct Frame {
+    pub header: Header,
+    pub id: u32,
+    pub is_rtr: bool,
+    pub is_extended: bool,
+    pub is_error: bool,
+    pub dlc: u8,
+    pub data: [u8; 8],
+}
 
 /// Two cylinders, 500 Hz, with everything that makes reading hard: uneven stamps, NaN, a sensor that is not there,
 /// commands that begin late, change one at a time and end.

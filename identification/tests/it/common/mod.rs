@@ -27,13 +27,23 @@ pub fn swing(model: &Model) -> Recording {
 /// The arm of `machine` steered by two sines, whose frequencies grow with `tempo` (rad/s), for `duration` s, as good instruments
 /// see it at 500 Hz.
 pub fn steered(machine: &Model, tempo: f64, duration: f64, seed: u64) -> Recording {
+    seen(machine, &steering(tempo, duration), seed)
+}
+
+/// The inputs of that arm.
+pub fn steering(tempo: f64, duration: f64) -> Recording {
     let time: Vec<f64> = (0..(duration * 500.0) as usize).map(|index| index as f64 / 500.0).collect();
     let mut recording = Recording::unmeasured("steered", time, &["arm"]);
     recording.tank_pressure.fill(6e5);
     recording.pump_flow.fill(3.8e-4);
     let area = |t: f64| 6e-5 * (tempo * t).sin() + 4e-5 * (2.7 * tempo * t).sin();
     recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
-    let mut seen = simulate_from_rest(machine, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
+    recording
+}
+
+/// What the arm of `machine` does with these inputs, as good instruments see it.
+pub fn seen(machine: &Model, recording: &Recording, seed: u64) -> Recording {
+    let mut seen = simulate_from_rest(machine, recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
     seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
     measure(&mut ChaCha8Rng::seed_from_u64(seed), &mut seen);
     seen
