@@ -254,11 +254,10 @@ impl<'m> MappedTopic<'m> {
         };
         // The message of the DBC file that the frame carries, by this topic's own sender of it.
         let known = frame.and_then(|frame| {
-            let places = self.fields.iter().filter_map(|field| match &field.at {
+            self.fields.iter().find_map(|field| match &field.at {
                 At::Frame(place) if place.is_in(frame.identifier) => Some(place.identifier()),
                 _ => None,
-            });
-            places.into_iter().next()
+            })
         });
         if let (Some(frame), Some(known)) = (frame, known)
             && !self.senders.takes(known, frame.identifier, times.log)

@@ -43,9 +43,7 @@ pub fn initial_state(
         let Distortion { offset, delay } = system.own_instruments().of(channel);
         // A position bends with the acceleration. Pressures and speeds can have corners, which a parabola overshoots.
         let bends = matches!(channel, Channel::Displacement(_) | Channel::JointAngle(_));
-        let fewest = if bends { FEWEST } else { 1 };
-        start_line(&recording.time, signal, index, delay, (window, fewest), bends)
-            .map(|(value, slope)| (value - offset, slope))
+        start_line(&recording.time, signal, index, delay, window, bends).map(|(value, slope)| (value - offset, slope))
     };
     let mut state = vec![0.0; layout.len];
     let mut unmeasured = Vec::new();
@@ -134,17 +132,11 @@ fn balance(system: &System<'_>, spool: &[f64], tank_pressure: f64, unmeasured: &
 const BENT: f64 = 20.0;
 
 /// Value and slope of a signal with a delay of `delay` s, at sample `index`: from the straight line through the values reported within
-/// a window after the delay (a time in s and a fewest number of samples), or from the parabola through them if the signal `bends` and
-/// they do. A line has the slope of the middle of the window: of a drive that starts with 1 m/s² it is 10 mm/s off.
-fn start_line(
-    time: &[f64],
-    signal: &[f64],
-    index: usize,
-    delay: f64,
-    (window, fewest): (f64, usize),
-    bends: bool,
-) -> Option<(f64, f64)> {
+/// `window` s after the delay. If the signal `bends`, through ten samples at least, and from the parabola through them where they bend.
+/// A line has the slope of the middle of the window: of a drive that starts with 1 m/s² it is 10 mm/s off.
+fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64, window: f64, bends: bool) -> Option<(f64, f64)> {
     let start = *time.get(index)? + delay;
+    let fewest = if bends { FEWEST } else { 1 };
     // Rounding of the clock must not exclude the first point.
     let first = time.partition_point(|&t| t < start - 1e-9);
     let points: Vec<(f64, f64)> = time[first..]
@@ -194,7 +186,7 @@ mod tests {
     fn start(signal: impl Fn(f64, usize) -> f64) -> (f64, f64) {
         let time: Vec<f64> = (0..30).map(|k| 1e-3 * f64::from(k)).collect();
         let values: Vec<f64> = time.iter().enumerate().map(|(k, t)| signal(*t, k)).collect();
-        start_line(&time, &values, 0, 0.0, (0.02, 1), true).unwrap()
+        start_line(&time, &values, 0, 0.0, 0.02, true).unwrap()
     }
 
     #[test]
@@ -209,8 +201,8 @@ mod tests {
         let time: Vec<f64> = (0..30).map(|k| 1e-2 * f64::from(k)).collect();
         let noise = [3.0, -5.0, 1.0, 7.0, -2.0, -6.0, 4.0, 0.0, -7.0, 5.0];
         let values: Vec<f64> = (0..30).map(|k| 0.2 + 1e-4 * noise[k % 10]).collect();
-        let (_, few) = start_line(&time, &values, 0, 0.0, (0.02, 1), true).unwrap();
-        let (_, many) = start_line(&time, &values, 0, 0.0, (0.02, FEWEST), true).unwrap();
+        let (_, few) = start_line(&time, &values, 0, 0.0, 0.02, false).unwrap();
+        let (_, many) = start_line(&time, &values, 0, 0.0, 0.02, true).unwrap();
         assert!(few.abs() > 8e-3 && many.abs() < 2e-3, "{few} {many}");
     }
 

@@ -44,9 +44,7 @@ impl ResultFile {
 
 #[derive(Debug, Default, Clone, Args)]
 pub struct Mapping {
-    /// Topic map (TOML): which field of which topic, or which column of a table, is which signal; or `opera`, for excavators with the
-    /// interface OPERA (COM3 frames or its topics). Without, the map.toml in the bag's folder or FILE.map.toml beside the file is used, if
-    /// there is one.
+    /// Topic map (TOML), or `opera`; without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
     /// Namespace of the machine, for a bag of our own topics, or of OPERA's, that has several.

@@ -30,14 +30,16 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
     let inputs = Inputs::recordings([path], arguments.map.as_deref());
     files::check(&[arguments.result.output()], &inputs, arguments.result.overwriting)?;
-    if DataTable::is_table(path) && !is_frame_log(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
+    let is_log = is_frame_log(path);
+    let is_table = DataTable::is_table(path) && !is_log;
+    if is_table && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
     let origin = Origin { map: arguments.map.as_deref(), namespace: arguments.namespace.as_deref() };
     // Two passes over the bag, one per thread.
     let (bag, signals) = std::thread::scope(|scope| {
         let signals = scope.spawn(|| read_signals(path, origin));
-        let is_bag = !DataTable::is_table(path) && !is_frame_log(path);
+        let is_bag = !is_table && !is_log;
         let bag = is_bag.then(|| info_with(path, own_definitions())).transpose();
         (bag, signals.join())
     });
@@ -48,7 +50,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
             (Some(bag), _) => show_bag(bag),
             (None, Ok((signals, _))) => {
                 let (path, samples) = (path.display(), signals.samples);
-                let kind = if is_frame_log(arguments.bag.as_path()) { "log of CAN frames" } else { "table" };
+                let kind = if is_log { "log of CAN frames" } else { "table" };
                 print(&format!("The {kind} {path} has {samples} samples in {:.2} s.", signals.duration));
             }
             (None, Err(_)) => (),
