@@ -4,6 +4,7 @@ use super::cursor::Cursor;
 use super::defined_member::Count;
 use super::field_path::{FieldPath, Index, Step};
 use super::layout::{Kind, Layout};
+use super::selector::{text_within, way_to_text};
 use crate::cdr::CdrError;
 
 /// Elements listed per array: an image has a million numbers, none of them a signal.
@@ -73,7 +74,7 @@ fn lists_of_names(layout: &Layout, number: usize, mut cursor: Cursor) -> Result<
                 {
                     inside.skip_members(layout, *inner, dim)?;
                     let count = inside.count(members[dim].count)?;
-                    let labels = texts_within(layout, &members[dim].kind, &["label"], count, inside)?;
+                    let labels = texts_within(layout, &members[dim].kind, "label", count, inside)?;
                     lists.extend(labels.map(|labels| ("layout.dim.label".to_string(), labels)));
                 }
                 cursor.skip(layout, &member.kind, 1)?;
@@ -98,36 +99,27 @@ fn lists_of_names(layout: &Layout, number: usize, mut cursor: Cursor) -> Result<
     Ok(lists)
 }
 
-/// Texts inside the elements at `cursor`, at most 16; `None` if the elements have no such member.
+/// Texts inside the elements at `cursor`, at most 16, by their key; `None` if the elements have no such member.
 fn texts_within(
     layout: &Layout,
     kind: &Kind,
-    way: &[&str],
+    key: &str,
     count: usize,
     mut cursor: Cursor,
 ) -> Result<Option<Vec<String>>, CdrError> {
+    let Kind::Struct(number) = *kind else { return Ok(None) };
+    let Some(way) = way_to_text(layout, number, key, false) else { return Ok(None) };
     let mut texts = Vec::new();
     for _ in 0..count.min(ELEMENT_LIMIT) {
-        let (mut inside, mut here) = (cursor, kind);
-        for name in way {
-            let Kind::Struct(number) = *here else { return Ok(None) };
-            let members = layout.structure(number).map_or(&[][..], |structure| &structure.members);
-            let found = members.iter().position(|member| member.name == *name && member.count == Count::One);
-            let Some(index) = found else { return Ok(None) };
-            inside.skip_members(layout, number, index)?;
-            here = &members[index].kind;
-        }
-        if *here != Kind::Text {
-            return Ok(None);
-        }
-        texts.push(String::from_utf8_lossy(inside.text()?).into_owned());
+        let Some(text) = text_within(layout, kind, &way, cursor)? else { return Ok(None) };
+        texts.push(String::from_utf8_lossy(text).into_owned());
         cursor.skip(layout, kind, 1)?;
     }
     Ok(Some(texts))
 }
 
-/// Ways to the name of an element.
-const NAMES_WITHIN: [&[&str]; 5] = [&["name"], &["id"], &["label"], &["frame_id"], &["header", "frame_id"]];
+/// Keys of the name of an element.
+const NAMES_WITHIN: [&str; 5] = ["name", "id", "label", "frame_id", "header.frame_id"];
 
 /// For each element of the array at `cursor`, its best address: its own name, the sibling list of names, otherwise its index. Names
 /// that several elements share are none.
@@ -140,9 +132,9 @@ fn addresses(
 ) -> Result<Vec<Index>, CdrError> {
     let listed = count.min(ELEMENT_LIMIT);
     let mut found: Option<(String, Vec<String>)> = None;
-    for way in NAMES_WITHIN.into_iter().filter(|_| matches!(kind, Kind::Struct(_))) {
+    for key in NAMES_WITHIN {
         if found.is_none() {
-            found = texts_within(layout, kind, way, count, cursor)?.map(|names| (way.join("."), names));
+            found = texts_within(layout, kind, key, count, cursor)?.map(|names| (key.to_string(), names));
         }
     }
     let found = found.or_else(|| beside.iter().find(|(_, names)| names.len() == listed).cloned());

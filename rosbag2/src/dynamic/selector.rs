@@ -202,7 +202,7 @@ fn named(layout: &Layout, own: usize, array: &Member, key: &str, value: &str) ->
 }
 
 /// The members that lead from a struct to a text, by a key such as `header.frame_id`. With `listed`, exactly one of them is an array.
-fn way_to_text(layout: &Layout, mut number: usize, key: &str, listed: bool) -> Option<Vec<usize>> {
+pub(super) fn way_to_text(layout: &Layout, mut number: usize, key: &str, listed: bool) -> Option<Vec<usize>> {
     let (mut way, mut lists) = (Vec::new(), 0);
     let mut names = key.split('.').peekable();
     while let Some(name) = names.next() {
@@ -253,22 +253,31 @@ fn place_of_element(
     text: &str,
 ) -> Result<Option<usize>, CdrError> {
     for place in 0..count {
-        let mut inside = cursor;
-        let mut kind_here = kind;
-        for &index in way {
-            let Kind::Struct(number) = *kind_here else { return Ok(None) };
-            let Some(member) = layout.structure(number).and_then(|structure| structure.members.get(index)) else {
-                return Ok(None);
-            };
-            inside.skip_members(layout, number, index)?;
-            kind_here = &member.kind;
+        match text_within(layout, kind, way, cursor)? {
+            Some(found) if found == text.as_bytes() => return Ok(Some(place)),
+            Some(_) => cursor.skip(layout, kind, 1)?,
+            None => return Ok(None),
         }
-        if inside.text()? == text.as_bytes() {
-            return Ok(Some(place));
-        }
-        cursor.skip(layout, kind, 1)?;
     }
     Ok(None)
+}
+
+/// The text to which `way` leads from the element at `cursor`; without a way, the element is the text.
+pub(super) fn text_within<'l, 'm>(
+    layout: &'l Layout,
+    mut kind: &'l Kind,
+    way: &[usize],
+    mut cursor: Cursor<'m>,
+) -> Result<Option<&'m [u8]>, CdrError> {
+    for &index in way {
+        let Kind::Struct(number) = *kind else { return Ok(None) };
+        let Some(member) = layout.structure(number).and_then(|structure| structure.members.get(index)) else {
+            return Ok(None);
+        };
+        cursor.skip_members(layout, number, index)?;
+        kind = &member.kind;
+    }
+    cursor.text().map(Some)
 }
 
 impl Layout {
