@@ -47,7 +47,7 @@ fn table(parameters: &[&ParameterChange]) -> Markup {
         } }
         p.note {
             "The model is fitted to the recordings before and to those after, each alone. A parameter changed if the difference exceeds "
-            (LEAST_SIGNIFICANCE) " of its standard errors and " (100.0 * LEAST_CHANGE) " % of its value. Offsets of sensors are fitted on "
+            (LEAST_SIGNIFICANCE) " times its standard error and " (100.0 * LEAST_CHANGE) " % of its value. Offsets of sensors are fitted on "
             "both sides and not compared."
         }
     }

@@ -11,6 +11,8 @@ from pages import PHONE, SETTLED, WIDE
 LEAST_TEXT = 11
 # Least contrast of text of that size: WCAG 2.2, level AA.
 LEAST_CONTRAST = 4.5
+# Plots follow the scheme in the frame in which the page learns of it.
+TWO_FRAMES = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
 FOLDED = "document.querySelectorAll('details:not([open])').length"
 
 
@@ -31,6 +33,8 @@ def view(page, browser, window, scheme):
     browser.wait_for(f"innerWidth === {window[0]}", "the window")
     browser.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     browser.wait_for(SETTLED, "plots as wide as their boxes")
+    browser.wait_for(f"matchMedia('(prefers-color-scheme: {scheme})').matches", f"the {scheme} scheme")
+    browser.value(TWO_FRAMES)
     return browser
 
 

@@ -25,7 +25,10 @@ def pairs(ros, excavator):
     def out_and_back():
         simulator.settle()
         simulator.hold(0.3, arm=AREA)
-        return simulator.hold(TIME / 2, arm=AREA) + simulator.hold(TIME / 2, arm=-AREA)
+        with simulator.holding(arm=AREA):
+            out = simulator.watch(TIME / 2)
+        with simulator.holding(arm=-AREA):
+            return out + simulator.watch(TIME / 2)
 
     states = simulator.undisturbed(out_and_back)
     wanted = {key(state) for state in states}

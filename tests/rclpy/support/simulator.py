@@ -119,8 +119,12 @@ class Simulator:
             self._ros.spin_until(lambda: self.is_open(**areas), f"valves to open {areas} m2")
 
     def hold(self, duration, **areas):
-        """Commands the areas, renewed in time, and returns the states of that time (s)."""
+        """Commands the areas, renewed in time, and returns the states of that time (s).
+
+        It begins with the first state that shows them: a reader that is still busy with its first messages has older
+        states waiting."""
         with self.holding(**areas):
+            self._ros.spin_until(lambda: self.is_open(**areas), f"valves to open {areas} m2")
             return self.watch(duration)
 
     @contextmanager
