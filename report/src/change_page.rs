@@ -1,6 +1,7 @@
 //! What changed in a machine: one page to show to a colleague.
 
-use excavator_identification::change::{Changes, LEAST_CHANGE, LEAST_SIGNIFICANCE, ParameterChange};
+use excavator_identification::change::{Changes, ParameterChange};
+use excavator_identification::decision::Policy;
 use excavator_model::Model;
 use maud::{Markup, html};
 
@@ -31,6 +32,7 @@ pub fn change_page(model: &Model, changes: &Changes) -> String {
 }
 
 fn table(parameters: &[&ParameterChange]) -> Markup {
+    let policy = Policy::default();
     html! {
         div.wide { table.data {
             thead { tr {
@@ -47,7 +49,7 @@ fn table(parameters: &[&ParameterChange]) -> Markup {
         } }
         p.note {
             "The model is fitted to the recordings before and to those after, each alone. A parameter changed if the difference exceeds "
-            (LEAST_SIGNIFICANCE) " times its standard error and " (100.0 * LEAST_CHANGE) " % of its value. Offsets of sensors are fitted on "
+            (policy.least_significance_of_change) " times its standard error and " (100.0 * policy.least_change) " % of its value. Offsets of sensors are fitted on "
             "both sides and not compared."
         }
     }

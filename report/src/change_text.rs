@@ -1,6 +1,7 @@
 //! Says what changed in a machine, in the words and units of a workshop.
 
-use excavator_identification::change::{Changes, LEAST_CHANGE, ParameterChange};
+use excavator_identification::change::{Changes, ParameterChange};
+use excavator_identification::decision::Policy;
 use excavator_model::Model;
 use excavator_model::display::PressureUnit;
 
@@ -77,7 +78,7 @@ pub fn change_sentence(model: &Model, changes: &Changes) -> String {
     let unknown: Vec<String> = changes.undetermined().map(|one| one.name.clone()).collect();
     let mut sentences = vec![match changed.as_slice() {
         [] => {
-            let least = 100.0 * LEAST_CHANGE;
+            let least = 100.0 * Policy::default().least_change;
             format!("No parameter of {machine} changed by more than its uncertainty and by {least:.0} %.")
         }
         some => format!("Changed in {machine}: {}.", some.join("; ")),

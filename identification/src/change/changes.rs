@@ -7,13 +7,6 @@ use crate::decision::Policy;
 use crate::fit::{Fit, FitError, FitSettings, fit, is_nuisance, with_nuisances};
 use crate::search::fit_given;
 
-/// Standard errors of a difference from which it counts: with twenty parameters, chance makes one such change in a thousand
-/// comparisons.
-pub const LEAST_SIGNIFICANCE: f64 = 4.0;
-
-/// Smallest change that counts, relative to the larger of both values: sensors and oil of one machine differ by less on the same day.
-pub const LEAST_CHANGE: f64 = 0.05;
-
 /// The same model, fitted to recordings before and to recordings after.
 #[derive(Debug, Clone)]
 pub struct Changes {
@@ -78,11 +71,12 @@ impl ParameterChange {
             is_determined: false,
             has_changed: false,
         };
+        let policy = Policy::default();
         let size = values[0].abs().max(values[1].abs());
         change.is_determined = change.margin_95() < size;
         change.has_changed = change.is_determined
-            && change.significance() >= LEAST_SIGNIFICANCE
-            && change.difference().abs() >= LEAST_CHANGE * size;
+            && change.significance() >= policy.least_significance_of_change
+            && change.difference().abs() >= policy.least_change * size;
         Some(change)
     }
 }

@@ -4,5 +4,5 @@ mod changes;
 mod drift;
 
 pub(crate) use changes::between;
-pub use changes::{Changes, LEAST_CHANGE, LEAST_SIGNIFICANCE, ParameterChange, changes};
+pub use changes::{Changes, ParameterChange, changes};
 pub use drift::drift;

@@ -60,6 +60,12 @@ pub struct Policy {
     pub share_of_a_law: f64,
     /// The same, so that the variable is named at all.
     pub share_of_a_variable: f64,
+    /// Smallest change of a parameter between two sets of recordings that counts, relative to the larger of both values: sensors
+    /// and oil of one machine differ by less on the same day.
+    pub least_change: f64,
+    /// Standard errors of its difference by which a parameter must change. With twenty parameters, chance makes one such change
+    /// in a thousand comparisons.
+    pub least_significance_of_change: f64,
 }
 
 impl Default for Policy {
@@ -84,6 +90,8 @@ impl Default for Policy {
             most_of_misfit: 0.7,
             share_of_a_law: 0.5,
             share_of_a_variable: 0.1,
+            least_change: 0.05,
+            least_significance_of_change: 4.0,
         }
     }
 }
