@@ -1,6 +1,6 @@
 //! Texts of the message definitions, as used by bags and tools.
 
-use crate::layout;
+use crate::field;
 
 /// Separator of the definitions in a schema: exactly 80 `=`. Other lengths make `mcap-ros2-support` fail.
 pub const SEPARATOR: &str = "================================================================================";
@@ -60,7 +60,7 @@ const TEXTS: [(&str, &str); 46] = [
 ///
 /// The name may be `package/msg/Type` or `package/Type`.
 pub fn message_text(type_name: &str) -> Option<&'static str> {
-    let wanted = layout::short_name(type_name);
+    let wanted = field::short_name(type_name);
     TEXTS.iter().find(|(name, _)| *name == wanted).map(|(_, text)| *text)
 }
 
@@ -84,12 +84,12 @@ pub fn schema(type_name: &str) -> Option<String> {
 /// `package/Type` of a type and of all types that it contains, each once, in order of first use. `None` if one of them
 /// is unknown.
 pub(crate) fn with_contained(type_name: &str) -> Option<Vec<String>> {
-    let mut types = vec![layout::short_name(type_name)];
+    let mut types = vec![field::short_name(type_name)];
     let mut next = 0;
     while let Some(name) = types.get(next) {
-        let package = layout::package(name).to_string();
-        for field in layout::fields(message_text(name)?).iter().filter(|field| !field.is_primitive()) {
-            let contained = layout::resolve(field.base_type(), &package);
+        let package = field::package(name).to_string();
+        for field in field::fields(message_text(name)?).iter().filter(|field| !field.is_primitive()) {
+            let contained = field::resolve(field.base_type(), &package);
             if !types.contains(&contained) {
                 types.push(contained);
             }

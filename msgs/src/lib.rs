@@ -13,6 +13,7 @@ mod cylinder_state;
 pub mod definitions;
 mod energy_state;
 mod energy_term;
+mod field;
 mod header;
 pub mod layout;
 mod message;

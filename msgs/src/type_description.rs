@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::definitions::{message_text, with_contained};
-use crate::layout::{self, Field};
+use crate::field::{self, Field};
 
 /// `type_description_interfaces/msg/TypeDescription`.
 ///
@@ -107,8 +107,8 @@ fn json(description: &IndividualTypeDescription) -> String {
 
 fn individual(short_name: &str) -> Option<IndividualTypeDescription> {
     let text = message_text(short_name)?;
-    let package = layout::package(short_name);
-    let fields = layout::fields(text)
+    let package = field::package(short_name);
+    let fields = field::fields(text)
         .into_iter()
         .map(|field| {
             Some(FieldDescription {
@@ -132,7 +132,7 @@ fn field_type(field: &Field, package: &str) -> Option<FieldType> {
         let bounded = if string_capacity.is_some() { BOUNDED } else { 0 };
         (primitive(field.base_type())? + bounded, String::new())
     } else {
-        (NESTED, long_name(&layout::resolve(field.base_type(), package)))
+        (NESTED, long_name(&field::resolve(field.base_type(), package)))
     };
     let inside = field.array_suffix().trim_start_matches('[').trim_end_matches(']');
     let (shape, capacity) = match (field.array_suffix(), inside.strip_prefix("<=")) {

@@ -3,20 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ._optional import needed
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.figure import Figure
-
-    from ._recording import Recording
+    from numpy.typing import NDArray
 
 WIDTH, HEIGHT = 9.0, 1.9
 """Width and height of one axis, in inches."""
 
 
-def of_recording(recording: Recording, names: Sequence[str]) -> Figure:
+class Signals(Protocol):
+    """Signals on one clock, as a recording has them."""
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Sample times, s."""
+
+    @property
+    def signals(self) -> Mapping[str, str]:
+        """The unit of each measured signal."""
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        """The values of a signal."""
+
+
+def of_recording(recording: Signals, names: Sequence[str]) -> Figure:
     """Plots signals over time, with one axis for each unit."""
     units = recording.signals
     chosen = list(names) or list(units)
@@ -33,7 +48,7 @@ def of_recording(recording: Recording, names: Sequence[str]) -> Figure:
     return figure
 
 
-def of_comparison(measured: Recording, simulated: Mapping[str, Recording], signals: Sequence[str]) -> Figure:
+def of_comparison(measured: Signals, simulated: Mapping[str, Signals], signals: Sequence[str]) -> Figure:
     """Plots measured and simulated signals over time, with one axis for each signal."""
     figure, axes = _axes(len(signals))
     units = measured.signals

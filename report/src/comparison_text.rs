@@ -2,7 +2,7 @@
 
 use excavator_identification::validation::{Baselines, Comparison, PhaseShare, SignalComparison};
 
-use super::comparison_page::Beside;
+use super::beside::Beside;
 use super::numbers::{percent, significant};
 
 /// Share of a signal's error that one phase of motion must hold to be mentioned.

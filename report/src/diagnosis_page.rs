@@ -13,7 +13,7 @@ use super::effect_cards::effect_card;
 use super::error_plots::{Errors, error_plots};
 use super::evidence_tables::{evidence, regimes};
 use super::page::{Section, page};
-use super::time_plots::MODEL;
+use super::plot_line::MODEL;
 use super::unexplained_plot::unexplained_plot;
 use super::verdict_text::verdict_sentence;
 use super::{energy_tables, parameter_table};

@@ -7,8 +7,8 @@ use excavator_model::Model;
 use excavator_model::recording::{Recording, is_measured};
 use maud::{Markup, html};
 
+use super::plot_line::Line;
 use super::svg::{Frame, picture, range_of};
-use super::time_plots::Line;
 use super::units::{self, Unit};
 use super::words;
 

@@ -5,6 +5,7 @@
 //! which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
 
 mod assets;
+mod beside;
 mod change_page;
 mod change_text;
 mod characterisation_page;
@@ -29,6 +30,8 @@ mod page;
 mod parameter_table;
 mod plausibility_text;
 mod plot_gaps;
+mod plot_json;
+mod plot_line;
 mod power_plots;
 mod proposal_page;
 mod proposal_text;
@@ -48,10 +51,11 @@ mod words;
 mod tests;
 
 pub use assets::{KINEMATICS, plotting};
+pub use beside::Beside;
 pub use change_page::change_page;
 pub use change_text::{change_sentence, relative_change, workshop_value};
 pub use characterisation_page::{characterisation_page, leakage_unit};
-pub use comparison_page::{Beside, comparison_page};
+pub use comparison_page::comparison_page;
 pub use comparison_text::{comparison_sentence, others_sentence};
 pub use diagnosis_page::diagnosis_page;
 pub use drive_rows::{DriveRow, drive_rows};

@@ -6,7 +6,8 @@ use excavator_model::recording::{Recording, is_measured};
 use excavator_model::urdf;
 use maud::{Markup, PreEscaped, html};
 
-use super::time_plots::{Line, shortest, text};
+use super::plot_json::{shortest, text};
+use super::plot_line::Line;
 
 /// Largest number of positions of one joint. A motion of a minute is smooth with ten per second.
 const MOST_POSITIONS: usize = 600;

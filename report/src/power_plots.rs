@@ -5,7 +5,8 @@ use maud::{Markup, html};
 
 use super::numbers::SIDES_95;
 use super::plot_gaps::gaps;
-use super::time_plots::{array, plot_box, shortest, text};
+use super::plot_json::{array, shortest, text};
+use super::time_plots::plot_box;
 
 /// One line of a plot.
 pub(super) struct PowerLine<'a> {

@@ -14,8 +14,9 @@ use super::frontier_plot::frontier_plot;
 use super::numbers::{percent, ratio, significant};
 use super::page::{Section, page, tile};
 use super::parameter_table;
+use super::plot_line::{AFTER, BEFORE, Line};
 use super::proposal_text::{numbers, proposal_sentence};
-use super::time_plots::{AFTER, BEFORE, Line, hint, time_plots};
+use super::time_plots::{hint, time_plots};
 use super::unexplained_plot::unexplained_plot;
 
 /// A page with proposed laws: the missing physics as a curve with the laws on it, error against complexity, and the

@@ -12,9 +12,10 @@ use super::named_text::refinement_sentence;
 use super::numbers::significant;
 use super::page::{Section, page, tile};
 use super::parameter_table;
+use super::plot_line::{AFTER, BEFORE, Line, MODEL};
 use super::signal_tables::{Stages, recordings};
 use super::step_plot::step_plot;
-use super::time_plots::{AFTER, BEFORE, Line, MODEL, hint, time_plots};
+use super::time_plots::{hint, time_plots};
 
 /// A page with the steps of a refinement: errors step by step, signals before and after, the final model, and its
 /// diagnosis.

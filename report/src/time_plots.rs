@@ -7,6 +7,8 @@ use maud::{Markup, PreEscaped, html};
 
 use super::machine_picture::machine_picture;
 use super::plot_gaps::gaps;
+use super::plot_json::{array, shortest, text};
+use super::plot_line::{Line, MEASURED};
 use super::units::{self, Unit};
 use super::{numbers, words};
 
@@ -19,30 +21,6 @@ const FEWEST_POINTS: usize = 200;
 /// Total count of numbers, including times, for all plots of a page. With about six characters each they leave room for
 /// the rest of a page of one megabyte.
 const NUMBERS_OF_A_PAGE: usize = 75_000;
-
-/// Style of one model's line.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Line {
-    /// Label in the legend.
-    pub label: &'static str,
-    /// CSS colour.
-    pub colour: &'static str,
-    /// Dashed, so that lines differ without colour.
-    pub dashed: bool,
-}
-
-/// The only or the final model.
-pub(super) const MODEL: Line = Line { label: "model", colour: "var(--blue)", dashed: false };
-/// The model before effects were added.
-pub(super) const BEFORE: Line = Line { label: "before", colour: "var(--orange)", dashed: true };
-/// The model with all effects.
-pub(super) const AFTER: Line = Line { label: "after", colour: "var(--blue)", dashed: false };
-/// A second model beside the first.
-pub(super) const OTHER_MODEL: Line = Line { label: "other model", colour: "var(--orange)", dashed: true };
-/// A second run of the machine.
-pub(super) const SECOND_RUN: Line = Line { label: "second run", colour: "var(--purple)", dashed: true };
-/// The measurement.
-const MEASURED: Line = Line { label: "measured", colour: "var(--measured)", dashed: false };
 
 /// Width of the measured line, px. It lies under the models and must be visible on both sides of them.
 const MEASURED_WIDTH: f64 = 4.0;
@@ -181,44 +159,5 @@ pub(super) fn plot_box(description: &str, json: &str) -> Markup {
         div.time-plot tabindex="0" role="application" aria-roledescription="plot" aria-label=(description) {
             script type="application/json" { (PreEscaped(json)) }
         }
-    }
-}
-
-/// JSON text that cannot close its script element.
-pub(super) fn text(words: &str) -> String {
-    serde_json::Value::from(words).to_string().replace('<', "\\u003c")
-}
-
-/// JSON array of the kept values with five significant digits; values that are not finite are `null`.
-pub(super) fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
-    let entries: Vec<String> = kept
-        .iter()
-        .map(|&index| match values.get(index).map(|value| value * factor) {
-            Some(value) if value.is_finite() => shortest(&format!("{value:.4e}")),
-            _ => "null".to_string(),
-        })
-        .collect();
-    format!("[{}]", entries.join(","))
-}
-
-/// The same number in the fewest characters that JSON allows. Plain digits of 1e-30 would fill a line.
-pub(super) fn shortest(decimal: &str) -> String {
-    let Ok(value) = decimal.parse::<f64>() else { return "null".to_string() };
-    let (plain, scientific) = (value.to_string(), format!("{value:e}"));
-    if scientific.len() < plain.len() { scientific } else { plain }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_short_and_gaps_are_null() {
-        assert_eq!(
-            array(&[1.234_567_8, f64::NAN, f64::INFINITY, -0.000_012_345_67], 1.0, &[0, 1, 2, 3]),
-            "[1.2346,null,null,-1.2346e-5]"
-        );
-        assert_eq!(array(&[1e-30, 0.0, 1500.0, -2e9], 1.0, &[0, 1, 2, 3]), "[1e-30,0,1500,-2e9]");
-        assert_eq!(text("a</script>\""), r#""a\u003c/script>\"""#);
     }
 }

@@ -19,9 +19,9 @@ use rustdds::{DomainParticipant, RTPSEntity, Timestamp, WriteOptionsBuilder};
 use serde::Serialize;
 
 use super::connection::Connection;
+use super::qos::SERVICE_DEPTH;
 use super::raw_bytes::{RawAdapter, RawBytes};
 use super::rtps::{Packet, entity, parameter, sequence_number};
-use super::services::SERVICE_DEPTH;
 use super::{Mapping, PublishError, TopicQos};
 
 /// Longest reply that is left to the library, bytes. With all headers it fits into the 1452 bytes that RustDDS allows

@@ -8,6 +8,9 @@ use rustdds::{Duration, QosPolicies, QosPolicyBuilder};
 /// DDS).
 const UNACKNOWLEDGED: i32 = 60_000;
 
+/// Depth of the queues of a service: rmw_qos_profile_services_default.
+pub(super) const SERVICE_DEPTH: u32 = 10;
+
 /// QoS that an endpoint offers or requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TopicQos {

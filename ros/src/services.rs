@@ -14,10 +14,8 @@ use rustdds::DomainParticipant;
 
 use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::large_replies::{LargeReplies, readers_of, reply_topic};
+use super::qos::SERVICE_DEPTH;
 use super::{Link, Mapping, RosError};
-
-/// Depth of the request queue: rmw_qos_profile_services_default.
-pub(super) const SERVICE_DEPTH: u32 = 10;
 
 /// The mapping as a type of the library.
 pub fn service_mapping(mapping: Mapping) -> ServiceMapping {

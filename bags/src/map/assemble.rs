@@ -8,7 +8,7 @@ use super::conversion::Conversion;
 use super::document::TopicMap;
 use super::error::MapError;
 use super::fault_code;
-use super::one_clock::stretch_text;
+use super::least_delays::stretch_text;
 use super::resample::{Policy, resample};
 use super::signal_source::SignalSource;
 use super::spike_line::spike_line;

@@ -9,6 +9,7 @@ use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
 use super::clock_source::ClockSource;
+use super::conversion::Conversion;
 use super::error::MapError;
 use super::join::Join;
 use super::leave_out::LeaveOut;
@@ -97,6 +98,9 @@ impl TopicMap {
                 return Err(MapError::SignalTwice { signal: source.signal.to_string() });
             }
             source.check()?;
+            if !source.may_learn_its_unit() {
+                Conversion::of(source, None)?;
+            }
             if source.message.is_some() && self.dbc.is_none() {
                 return Err(MapError::NoDbc { place: source.signal.to_string() });
             }

@@ -143,3 +143,9 @@ pub(super) const STANDS: f64 = 0.01;
 const SHORTEST_FOR_A_RATE: f64 = 2e8;
 /// Difference of two clocks that no delay explains, s: a month.
 const ANOTHER_EPOCH: f64 = 2.6e6;
+
+/// A stretch of times for people, relative to the start of another one, s.
+pub(super) fn stretch_text(from: i64, to: i64) -> String {
+    let sign = |value: i64| if value < 0 { "-" } else { "" };
+    format!("{}{} to {}{}", sign(from), seconds_text(from), sign(to), seconds_text(to))
+}

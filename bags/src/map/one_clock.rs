@@ -6,7 +6,7 @@
 
 use super::clock_source::Stamp;
 use super::error::MapError;
-use super::least_delays::{DRIFT, LeastDelays, STANDS, seconds_text};
+use super::least_delays::{DRIFT, LeastDelays, STANDS};
 use super::mapped_topic::MappedTopic;
 
 /// Stamps this much later than their log times are impossible on one clock, ns. Some recorders round log times to ms.
@@ -140,10 +140,4 @@ pub(super) fn two_publishers(label: &str, values: u64, values_of_other: u64) -> 
         "{label}: two publishers write its topic at the same time, through channels of their own; the {values_of_other} values of one are \
          used, the {values} of the other are left out"
     )
-}
-
-/// A stretch of times for people, relative to the start of another one, s.
-pub(super) fn stretch_text(from: i64, to: i64) -> String {
-    let sign = |value: i64| if value < 0 { "-" } else { "" };
-    format!("{}{} to {}{}", sign(from), seconds_text(from), sign(to), seconds_text(to))
 }

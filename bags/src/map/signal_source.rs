@@ -6,7 +6,6 @@ use rosbag2::dynamic::FieldPath;
 use serde::{Deserialize, Serialize};
 
 use super::clock_source::{ColumnName, Stamp};
-use super::conversion::Conversion;
 use super::error::MapError;
 use super::quantity::Quantity;
 use super::signal::SignalName;
@@ -108,12 +107,12 @@ impl SignalSource {
             return Err(MapError::NoSource { signal });
         }
         check_place(&signal, self.message.is_some() && !is_field, self.file.is_some() && self.column.is_none())?;
-        check_times(&signal, self.maximum_gap, self.time_shift)?;
-        // The column heading or the DBC file may still provide the unit, so a missing unit is not an error here.
-        if self.column.is_none() && self.message.is_none() || self.unit.is_some() {
-            Conversion::of(self, None)?;
-        }
-        Ok(())
+        check_times(&signal, self.maximum_gap, self.time_shift)
+    }
+
+    /// Whether the heading of a column or a DBC file may still say the unit.
+    pub(super) fn may_learn_its_unit(&self) -> bool {
+        (self.column.is_some() || self.message.is_some()) && self.unit.is_none()
     }
 }
 

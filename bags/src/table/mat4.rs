@@ -3,7 +3,7 @@
 use rosbag2::ReadLimits;
 
 use super::fault::TableFault;
-use super::mat::{Budget, Number, Variable};
+use super::mat_variables::{Budget, Number, Variable};
 
 const HEADER: usize = 20;
 /// Maximum length of a variable name; a longer one means that the file has another format.

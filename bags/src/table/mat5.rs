@@ -5,7 +5,7 @@ use std::io::Read;
 use rosbag2::{LimitError, ReadLimits};
 
 use super::fault::TableFault;
-use super::mat::{Budget, Content, Number, Variable};
+use super::mat_variables::{Budget, Content, Number, Variable};
 use super::split::decoded;
 
 const HEADER: usize = 128;

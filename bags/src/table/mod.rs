@@ -23,6 +23,8 @@ mod mat4;
 #[cfg(feature = "tables")]
 mod mat5;
 #[cfg(feature = "tables")]
+mod mat_variables;
+#[cfg(feature = "tables")]
 mod parquet;
 mod sampling;
 mod split;

@@ -8,6 +8,7 @@ mod bounded;
 mod curve;
 mod grammar;
 mod guess;
+mod law_candidate;
 mod memory;
 mod merits;
 mod projection;

@@ -13,7 +13,7 @@ use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
 use super::grammar::{Sized, law_text};
-use super::shortlist::Candidate;
+use super::law_candidate::Candidate;
 use crate::fit::{FitSettings, Linearised};
 
 /// Number of laws that are simulated together. Each law is evaluated in every direction. All laws together pay once for

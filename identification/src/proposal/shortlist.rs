@@ -1,31 +1,13 @@
 //! Selects the laws that are worth a fit from the screened terms.
 
 use excavator_model::Model;
-use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
 
 use super::grammar::Sized;
+use super::law_candidate::Candidate;
 use super::promise::{Promised, combined, promised};
 use super::screening::{Screened, Screening};
 use crate::fit::FitSettings;
-
-/// A law that is worth a fit.
-#[derive(Debug, Clone)]
-pub(super) struct Candidate {
-    /// Where it acts.
-    pub site: Site,
-    /// Its terms, in one row.
-    pub terms: Vec<Sized>,
-    /// Evidence of the regression on the equations.
-    pub evidence: f64,
-}
-
-impl Candidate {
-    /// Whether it is a whole law, not a sum of products.
-    fn is_whole(&self) -> bool {
-        self.terms.iter().any(|sized| sized.term.is_whole())
-    }
-}
 
 /// Largest number of laws: of one term by prediction, of one term by evidence of the equations, and of several terms.
 /// The equations are right where an effect is large and the outputs far from linear in it. The predictions for the

@@ -11,9 +11,9 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 
 use super::grammar::{GROWING, OPENING, PAST_THE_PISTON, REMEMBERING, RESISTING, SHIFTING, Sized, Term, law_text};
+use super::law_candidate::Candidate;
 use super::promise::promised;
 use super::screening::{Evaluated, probed};
-use super::shortlist::Candidate;
 use crate::fit::FitSettings;
 use crate::regression::{WeakFormSettings, weak_terms};
 

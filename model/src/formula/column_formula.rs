@@ -2,10 +2,10 @@
 
 use super::compile::compile_plain;
 use super::error::{FormulaError, Problem};
-use super::expression::Symbol;
 use super::names::Names;
 use super::parser::{is_word, parse};
 use super::program::{Moment, Program, nowhere};
+use super::symbol::Symbol;
 use crate::effects::nearest;
 use crate::equations::Situation;
 use crate::recording::slopes;

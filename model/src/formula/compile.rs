@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::corner::Corner;
 use super::dimension::Dimension;
 use super::error::{FormulaError, Problem};
-use super::expression::{Expression, Node, Operator, Symbol};
+use super::expression::{Expression, Node, Operator};
 use super::function::Function;
 use super::program::{Operation, Program};
+use super::symbol::Symbol;
 use super::table::Table;
 
 /// The unit of a part of a formula.

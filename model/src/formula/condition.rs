@@ -2,10 +2,10 @@
 
 use super::compile::compile_difference;
 use super::error::{FormulaError, Problem};
-use super::expression::Symbol;
 use super::names::Names;
 use super::parser::parse_condition;
 use super::program::{Moment, Program};
+use super::symbol::Symbol;
 use super::variable::Variable;
 use crate::equations::Situation;
 use crate::machine::Machine;

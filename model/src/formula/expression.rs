@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::function::Function;
-use super::variable::Variable;
+use super::symbol::Symbol;
 
 /// A part of a formula and its position in the text.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,17 +47,6 @@ pub(super) enum Node {
         then: Box<Expression>,
         otherwise: Box<Expression>,
     },
-}
-
-/// The meaning of a name.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) enum Symbol {
-    /// The effect's parameter with this index.
-    Parameter(usize),
-    /// The effect's state with this index.
-    State(usize),
-    /// A variable of the effect's own place, or of the cylinder with this name.
-    Variable(Variable, Option<String>),
 }
 
 /// A binary operator.

@@ -1,8 +1,8 @@
 //! A formula as a physical effect.
 
-use super::expression::Symbol;
 use super::program::{Moment, Program};
 use super::row::Row;
+use super::symbol::Symbol;
 use super::text::FormulaText;
 use super::variable::Variable;
 use crate::effects::{Card, ParameterCard, Physics, Site, Start};

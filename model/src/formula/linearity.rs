@@ -1,6 +1,7 @@
 //! Finds the parameters in which a formula is linear.
 
-use super::expression::{Expression, Node, Operator, Symbol};
+use super::expression::{Expression, Node, Operator};
+use super::symbol::Symbol;
 
 /// Which of `count` parameters form a set in which the formula is jointly linear: earlier ones take precedence.
 pub(super) fn linear_parameters(formula: &Expression, count: usize) -> Vec<bool> {

@@ -21,6 +21,7 @@ mod power;
 mod program;
 mod read;
 mod row;
+mod symbol;
 mod table;
 mod text;
 mod token;

@@ -1,6 +1,6 @@
 //! Resolves the names in a formula.
 
-use super::expression::Symbol;
+use super::symbol::Symbol;
 use super::variable::VARIABLES;
 
 /// The parameters and states of an effect; its formulas also use the variables of the language.

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::error::{FormulaError, Problem};
-use super::expression::{Expression, Node, Operator, Symbol};
+use super::expression::{Expression, Node, Operator};
 use super::function::{FUNCTIONS, Function};
 use super::names::Names;
+use super::symbol::Symbol;
 use super::token::{Placed, Token, tokens};
 use crate::effects::nearest;
 

@@ -1,8 +1,8 @@
 //! A formula as a list of operations, evaluated with any number type.
 
 use super::corner::Corner;
-use super::expression::Symbol;
 use super::power::{fixed_power, power};
+use super::symbol::Symbol;
 use super::table::Table;
 use super::variable::Variable;
 use crate::equations::smooth::{orifice_root, rounded_sign, rounded_step};

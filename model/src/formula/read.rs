@@ -3,13 +3,14 @@
 use super::compile::compile;
 use super::dimension::{Dimension, UnitError};
 use super::error::{FormulaError, Problem};
-use super::expression::{Expression, Symbol};
+use super::expression::Expression;
 use super::law::{Law, StateLaw};
 use super::linearity::linear_parameters;
 use super::names::Names;
 use super::parser::{is_reserved, is_word, parse};
 use super::program::Program;
 use super::row::{ROWS, Row};
+use super::symbol::Symbol;
 use super::text::{FormulaText, ParameterText, StateText};
 use super::variable::Variable;
 use crate::effects::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Start, Text, nearest};

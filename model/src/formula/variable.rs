@@ -1,7 +1,6 @@
 //! The variables that a formula may use.
 
 use super::dimension::Dimension;
-use super::expression::Symbol;
 
 /// A quantity of the machine at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -102,21 +101,4 @@ impl Variable {
 /// Name, SI unit and meaning of every variable.
 pub fn variables() -> impl Iterator<Item = [&'static str; 3]> {
     VARIABLES.iter().map(|card| [card.name, card.unit, card.meaning])
-}
-
-impl Symbol {
-    /// The variable with this name, `v` or `boom.v`.
-    pub fn variable(name: &str) -> Option<Symbol> {
-        let (cylinder, own) = name.rsplit_once('.').map_or((None, name), |(cylinder, own)| (Some(cylinder), own));
-        let variable = VARIABLES.iter().find(|card| card.name == own)?.variable;
-        if cylinder.is_some_and(|cylinder| cylinder.is_empty() || !variable.is_of_a_cylinder()) {
-            return None;
-        }
-        Some(Symbol::Variable(variable, cylinder.map(str::to_string)))
-    }
-
-    /// Whether a variable has this name.
-    pub fn is_variable(name: &str) -> bool {
-        VARIABLES.iter().any(|card| card.name == name)
-    }
 }

@@ -52,3 +52,16 @@ pub fn zero_order_hold(time: &[f64], values: &[f64], at: f64) -> f64 {
         after => values[after - 1],
     }
 }
+
+/// The signal with holes bridged by straight lines and constant at the ends; `None` if there is no measured value.
+pub(crate) fn without_holes(time: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
+    if signal.iter().all(|value| value.is_finite()) {
+        return (!signal.is_empty()).then(|| signal.to_vec());
+    }
+    let (known_time, known): (Vec<f64>, Vec<f64>) =
+        time.iter().zip(signal).filter(|(_, value)| value.is_finite()).map(|(&t, &value)| (t, value)).unzip();
+    if known.is_empty() {
+        return None;
+    }
+    Some(time.iter().map(|&t| linear(&known_time, &known, t)).collect())
+}

@@ -15,6 +15,7 @@ mod standard_deviation;
 pub use cylinder_signals::CylinderSignals;
 pub use denoise::{denoised, denoised_towards_zero, noise_level};
 pub use error::RecordingError;
+pub(crate) use interpolation::without_holes;
 pub use interpolation::{cubic, linear, zero_order_hold};
 pub use noise::has_noise;
 pub use pieces::{closed_gaps, longest_gap, median_interval};

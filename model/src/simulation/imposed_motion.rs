@@ -2,10 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::input_signals::without_holes;
 use crate::equations::ImposedState;
 use crate::machine::Cylinder;
-use crate::recording::{CylinderSignals, is_measured};
+use crate::recording::{CylinderSignals, is_measured, without_holes};
 
 /// Half width of the parabolas for rate and acceleration, in samples and in s, whichever is longer.
 const HALF_WIDTH: (f64, f64) = (5.0, 0.02);

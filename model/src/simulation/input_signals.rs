@@ -6,7 +6,7 @@ use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
 use crate::equations::{ImposedState, Inputs, USUAL_OIL_TEMPERATURE};
 use crate::machine::{Growth, Size, Supply};
-use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
+use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation, without_holes};
 use crate::{Imposed, Model, SignalError};
 
 /// Interpolation of an input between its samples.
@@ -351,19 +351,6 @@ fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolati
 /// Commanded openings, m². Before the first command the valve counts as closed.
 fn command_or_closed(command: &[f64]) -> Vec<f64> {
     command.iter().map(|&area| if area.is_finite() { area } else { 0.0 }).collect()
-}
-
-/// The signal with holes bridged by straight lines and constant at the ends; `None` if there is no measured value.
-pub(crate) fn without_holes(time: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
-    if signal.iter().all(|value| value.is_finite()) {
-        return (!signal.is_empty()).then(|| signal.to_vec());
-    }
-    let (known_time, known): (Vec<f64>, Vec<f64>) =
-        time.iter().zip(signal).filter(|(_, value)| value.is_finite()).map(|(&t, &value)| (t, value)).unzip();
-    if known.is_empty() {
-        return None;
-    }
-    Some(time.iter().map(|&t| crate::recording::linear(&known_time, &known, t)).collect())
 }
 
 /// Half width of the mean over tank pressure, in samples. The tank line is short and open, so its pressure changes slowly, while

@@ -10,21 +10,9 @@ use super::gone::GoneFile;
 use super::options::WriteOptions;
 use super::part::{Location, Part, Written};
 use super::reserve::Reserve;
+use super::topic_to_write::TopicToWrite;
 use crate::metadata::{BagCompression, Contents, FILE_NAME, FileContents, TopicContents};
 use crate::{Error, Qos};
-
-/// A topic to be added to a bag.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct TopicToWrite {
-    /// Name: `/joint_states`.
-    pub name: String,
-    /// Type of the messages: `sensor_msgs/msg/JointState`.
-    pub type_name: String,
-    /// Definition of the type and of all types that it contains, `ros2msg`.
-    pub schema: String,
-    /// QoS that the publishers offer, one entry per publisher; may be empty.
-    pub qos: Vec<Qos>,
-}
 
 /// The id of a topic in the [`BagWriter`] that returned it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

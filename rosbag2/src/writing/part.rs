@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 
 use mcap::records::MessageHeader;
 
-use super::bag_writer::TopicToWrite;
 use super::counted::{Counted, Progress};
 use super::options::WriteOptions;
+use super::topic_to_write::TopicToWrite;
 use crate::metadata::FileContents;
 use crate::{Error, Qos};
 

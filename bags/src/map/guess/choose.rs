@@ -12,6 +12,7 @@ use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Origin};
 use super::confidence::{alternatives, confidence};
 use super::names;
+use super::pair::Pair;
 use super::shapes::{Shape, derivative, rest, short};
 use super::{Confidence, GuessedSignal, Hints, Possibility, SheetColumn, ZeroAt};
 use crate::table::heading_of;
@@ -27,16 +28,6 @@ const LEAST_CORRELATION: f64 = 0.8;
 /// A column whose derivative correlates this strongly with the command is the position that the command moves. The
 /// second value applies if its name marks it as measured.
 const LEAST_FOLLOWING: [f64; 2] = [0.5, 0.3];
-
-/// A candidate, a possible signal for it, and a score.
-pub(super) struct Pair {
-    pub candidate: usize,
-    pub kind: SignalKind,
-    pub score: f64,
-    pub reason: String,
-    /// Whether only order, size or motion support it.
-    pub is_weak: bool,
-}
 
 /// The signals, and the labels of unused candidates.
 pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<GuessedSignal>, Vec<String>) {

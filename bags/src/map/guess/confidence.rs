@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::super::signal::SignalName;
 use super::Confidence;
-use super::choose::Pair;
+use super::pair::Pair;
 
 /// From this score, name, unit and shape together are sufficient.
 const SURE_SCORE: f64 = 0.75;

@@ -6,6 +6,7 @@ mod confidence;
 mod from_bag;
 mod from_table;
 mod names;
+mod pair;
 mod shapes;
 mod sheet_column;
 mod text;

@@ -4,7 +4,7 @@ use excavator_model::formula::Row;
 
 use super::factor::{Factor, memory, plain, remembering, shaped};
 use super::shapes::{BRISTLE, CENTRE, FADING, FALL, KNEE, LAG, LOAD_THRESHOLD, PHASE, PLACE, WAVE_LENGTH, WAY, WIDTH};
-use super::term::Term;
+use super::term::{Sized, Term};
 use super::unit::{
     AREA, FORCE, LENGTH, LENGTH_2, LENGTH_3, PRESSURE, PRESSURE_2, PURE, RATE, RATE_2, ROOT_OF_PRESSURE, ROOT_OF_SPEED,
     SPEED, SPEED_2, TIME,
@@ -119,4 +119,13 @@ pub(super) fn forces(terms: &mut Vec<Term>) {
     terms.extend(
         pressed.flat_map(|other| TURNING[..2].iter().map(|turning| Term::product(Row::JointTorque, turning, other))),
     );
+}
+
+impl Sized {
+    /// Whether it is a force or a torque against the motion.
+    pub fn resists(&self) -> bool {
+        let word = self.term.factors[0].word;
+        let of_motion = RESISTING.iter().chain(&TURNING[..3]).any(|factor| factor.word == word);
+        matches!(self.term.row, Row::PistonForce | Row::JointTorque) && of_motion && self.coefficient < 0.0
+    }
 }

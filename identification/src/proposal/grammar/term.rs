@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use excavator_model::formula::{FormulaText, ParameterText, Row, StateText};
 
 use super::factor::{Factor, ONE};
-use super::forces::{RESISTING, TURNING};
 use super::unit;
 
 /// Source text of a proposed law.
@@ -39,13 +38,6 @@ impl Sized {
         self.term == other.term
             && self.cylinder == other.cylinder
             && self.coefficient.is_sign_negative() == other.coefficient.is_sign_negative()
-    }
-
-    /// Whether it is a force or a torque against the motion.
-    pub fn resists(&self) -> bool {
-        let word = self.term.factors[0].word;
-        let of_motion = RESISTING.iter().chain(&TURNING[..3]).any(|factor| factor.word == word);
-        matches!(self.term.row, Row::PistonForce | Row::JointTorque) && of_motion && self.coefficient < 0.0
     }
 }
 
