@@ -30,6 +30,7 @@ impl DamageList {
     }
 
     /// All entries, for later completion.
+    #[cfg(feature = "sqlite")]
     pub fn as_mut_slice(&mut self) -> &mut [Damage] {
         &mut self.0
     }

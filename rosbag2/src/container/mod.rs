@@ -16,5 +16,6 @@ mod registry;
 mod summary;
 
 pub use damage::{Damage, DamageKind};
+#[cfg(feature = "sqlite")]
 pub(crate) use damage_list::DamageList;
 pub(crate) use mcap_file::McapFile;
