@@ -1,12 +1,14 @@
 //! One connection to the ROS graph, and everything that exists only as long as the connection.
 
 use std::any::Any;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use ros2_client::{Context, Node, NodeName, NodeOptions};
 use rustdds::{DomainParticipant, DomainParticipantBuilder, QosPolicies, Topic, TopicKind};
 use tokio::runtime::Handle;
 
+use super::arrivals::Writer;
 use super::farewell::Farewell;
 use super::guard::{Before, Guard, GuardError};
 use super::probe::Probe;
@@ -51,6 +53,18 @@ impl Extend<Closed> for Closed {
     }
 }
 
+/// What an endpoint needs.
+pub enum Tended {
+    /// Nothing.
+    Nothing,
+    /// To be opened once more, beside itself.
+    Open,
+    /// Its second reader is closed.
+    Closed(Closed),
+    /// Its first reader was deaf and is closed; the topic.
+    Replaced(String, Closed),
+}
+
 /// An endpoint that exists on a connection and is opened again on the next one.
 pub trait Endpoint: Send + Sync {
     /// Creates the endpoint on a new connection. It is not used before it is installed: a connection may turn out to be
@@ -59,6 +73,12 @@ pub trait Endpoint: Send + Sync {
 
     /// Releases everything that belongs to the connection.
     fn close(&self) -> Closed;
+
+    /// Checks a reader against the writers on the graph. It may ask to be opened once more beside itself, or give back
+    /// what it does not need any more.
+    fn tend(&self, _present: &mut dyn FnMut() -> BTreeSet<Writer>) -> Tended {
+        Tended::Nothing
+    }
 
     /// Full name and ROS type of the topic, if the endpoint is a topic.
     fn interface(&self) -> Option<(String, String)> {

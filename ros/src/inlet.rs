@@ -1,6 +1,6 @@
 //! A subscription that outlives its connection.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::pin::pin;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,8 +11,10 @@ use futures::StreamExt;
 use ros2_client::Gid;
 use rustdds::DomainParticipant;
 
-use super::connection::{Closed, Connection, Endpoint, Install, Task};
+use super::arrivals::Writer;
+use super::connection::{Closed, Connection, Endpoint, Install, Tended};
 use super::dds_names::{dds_topic, dds_type};
+use super::readers::Readers;
 use super::{RosError, TopicQos};
 
 /// Metadata of a received message.
@@ -37,13 +39,13 @@ pub(super) struct Inlet<M> {
     qos: TopicQos,
     callback: Arc<Mutex<Callback<M>>>,
     undecodable: Arc<AtomicU64>,
-    task: Mutex<Option<Task>>,
+    readers: Readers,
 }
 
 impl<M: Message + Send + 'static> Inlet<M> {
     pub(super) fn new(topic: String, qos: TopicQos, callback: Callback<M>) -> Self {
         let callback = Arc::new(Mutex::new(callback));
-        Inlet { topic, qos, callback, undecodable: Arc::default(), task: Mutex::new(None) }
+        Inlet { topic, qos, callback, undecodable: Arc::default(), readers: Readers::default() }
     }
 
     /// Number of messages so far that could not be decoded or had another type.
@@ -63,11 +65,16 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
         let callback = Arc::clone(&self.callback);
         let undecodable = Arc::clone(&self.undecodable);
         let mut types = WriterTypes::new(connection.participant(), wanted_type);
+        let (readers, number) = (Arc::clone(&self), self.readers.enter());
         let reading = async move {
             let mut messages = pin!(subscription.async_stream());
             while let Some(message) = messages.next().await {
                 match message {
                     Ok((message, info)) if types.fits(info.publisher_gid()) => {
+                        let writer = info.publisher_gid().to_bytes16();
+                        if !readers.readers.take(number, writer, info.sequence_number()) {
+                            continue;
+                        }
                         let received = Received {
                             at: Instant::now(),
                             published: info.source_timestamp().map(|time| time.to_nanos()),
@@ -88,12 +95,16 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
             }
         };
         Ok(Box::new(move |runtime| {
-            *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(runtime.spawn(reading));
+            self.readers.install(number, runtime.spawn(reading));
         }))
     }
 
     fn close(&self) -> Closed {
-        Closed::tasks(self.task.lock().unwrap_or_else(PoisonError::into_inner).take())
+        self.readers.close()
+    }
+
+    fn tend(&self, present: &mut dyn FnMut() -> BTreeSet<Writer>) -> Tended {
+        self.readers.tend(&self.topic, present)
     }
 
     fn interface(&self) -> Option<(String, String)> {

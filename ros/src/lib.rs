@@ -42,6 +42,7 @@
 //! | malformed packets end threads or exhaust memory | `guard`: a filter in the kernel, in front of the sockets |
 
 mod arguments;
+mod arrivals;
 mod clock;
 pub mod connection;
 pub mod dds_names;
@@ -75,6 +76,7 @@ mod probe;
 mod qos;
 pub mod raw;
 mod raw_bytes;
+mod readers;
 mod reminder;
 mod rtps;
 mod security;

@@ -4,10 +4,11 @@ use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use excavator_msgs::Message;
+use ros2_client::Gid;
 use rustdds::DomainParticipant;
 use tokio::runtime::Handle;
 
-use super::connection::{Closed, Connection, Endpoint, Install, Task};
+use super::connection::{Closed, Connection, Endpoint, Install, Task, Tended};
 use super::dds_names::dds_topic;
 use super::guard::{Guard, GuardError};
 use super::inlet::{Inlet, Received};
@@ -124,6 +125,44 @@ impl Link {
         }
         state.endpoints.push(endpoint);
         Ok(())
+    }
+
+    /// Looks after the readers: one that is deaf to a writer that goes on is replaced. Returns the topics of these. Must
+    /// not be called from the runtime.
+    pub(super) fn tend(&self) -> Vec<String> {
+        let (endpoints, participant) = {
+            let state = self.lock();
+            (state.endpoints.clone(), state.connection.as_ref().map(Connection::participant))
+        };
+        let Some(participant) = participant else { return Vec::new() };
+        let mut present = || {
+            let writers = participant.discovered_writers();
+            writers.iter().map(|data| Gid::from(data.publication_topic_data.key).to_bytes16()).collect()
+        };
+        let mut replaced = Vec::new();
+        for endpoint in endpoints {
+            match endpoint.tend(&mut present) {
+                Tended::Nothing => {}
+                Tended::Open => self.open_beside(endpoint),
+                Tended::Closed(closed) => self.end(closed.tasks),
+                Tended::Replaced(topic, closed) => {
+                    self.end(closed.tasks);
+                    replaced.push(topic);
+                }
+            }
+        }
+        replaced
+    }
+
+    /// Opens an endpoint once more. If the middleware fails meanwhile, the watch finds that.
+    fn open_beside(&self, endpoint: Arc<dyn Endpoint>) {
+        let mut state = self.lock();
+        let Some(connection) = state.connection.take() else { return };
+        let Some((connection, opened)) = within(BUILDING, move || connection.with(endpoint)) else { return };
+        if let Ok(install) = opened {
+            install(&self.shared.runtime);
+        }
+        state.connection = Some(connection);
     }
 
     /// Closes all endpoints permanently and drops their callbacks. Must not be called from the runtime.

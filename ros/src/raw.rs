@@ -1,5 +1,6 @@
 //! Readers and writers of topics of any type.
 
+use std::collections::BTreeSet;
 use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -10,10 +11,12 @@ use rustdds::no_key::DataWriter;
 use rustdds::policy::Durability;
 use rustdds::{GUID, QosPolicies, Timestamp, WriteOptionsBuilder};
 
+use super::arrivals::Writer;
 use super::clock::system_nanoseconds;
-use super::connection::{Closed, Connection, Endpoint, Install, Task};
+use super::connection::{Closed, Connection, Endpoint, Install, Tended};
 use super::dds_names::{dds_topic, dds_type};
 use super::raw_bytes::{RawAdapter, RawBytes};
+use super::readers::Readers;
 use super::{Link, PublishError, RosError};
 
 /// A message as received.
@@ -41,7 +44,7 @@ pub struct RawInlet {
     type_name: String,
     qos: QosPolicies,
     callback: Arc<Mutex<Callback>>,
-    task: Mutex<Option<Task>>,
+    readers: Readers,
 }
 
 impl RawInlet {
@@ -69,7 +72,7 @@ impl RawInlet {
             type_name: dds_type.to_string(),
             qos,
             callback: Arc::new(Mutex::new(Box::new(callback))),
-            task: Mutex::new(None),
+            readers: Readers::default(),
         }))
     }
 }
@@ -84,6 +87,7 @@ impl Endpoint for RawInlet {
             .create_simple_datareader_no_key::<RawBytes, RawAdapter>(&topic, Some(self.qos.clone()))
             .map_err(|error| failed(error.to_string()))?;
         let callback = Arc::clone(&self.callback);
+        let (readers, number) = (Arc::clone(&self), self.readers.enter());
         let reading = async move {
             let mut samples = pin!(reader.as_async_stream());
             while let Some(sample) = samples.next().await {
@@ -98,16 +102,22 @@ impl Endpoint for RawInlet {
                     sequence: i64::from(sample.sequence_number),
                     data: sample.into_value().0,
                 };
-                (callback.lock().unwrap_or_else(PoisonError::into_inner))(raw);
+                if readers.readers.take(number, raw.writer, raw.sequence) {
+                    (callback.lock().unwrap_or_else(PoisonError::into_inner))(raw);
+                }
             }
         };
         Ok(Box::new(move |runtime| {
-            *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(runtime.spawn(reading));
+            self.readers.install(number, runtime.spawn(reading));
         }))
     }
 
     fn close(&self) -> Closed {
-        Closed::tasks(self.task.lock().unwrap_or_else(PoisonError::into_inner).take())
+        self.readers.close()
+    }
+
+    fn tend(&self, present: &mut dyn FnMut() -> BTreeSet<Writer>) -> Tended {
+        self.readers.tend(&self.topic, present)
     }
 }
 

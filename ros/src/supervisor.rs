@@ -152,7 +152,7 @@ impl Supervisor {
     pub fn run(&self, mut on_user_signal: impl FnMut()) {
         let mut watch = self.watch(self.memory_at_start);
         let mut quiet_until = Instant::now();
-        let mut rebuilds = 0;
+        let (mut rebuilds, mut replaced) = (0, 0);
         let mut pending = None;
         while !self.stop.load(Ordering::Relaxed) {
             match self.signals.wait(TICK) {
@@ -167,6 +167,10 @@ impl Supervisor {
             if let Err(error) = self.clock.follow(&self.link, self.parameters.flag("use_sim_time")) {
                 self.logger.error(error.to_string());
             }
+            for topic in self.link.tend() {
+                replaced += 1;
+                self.logger.warn(format!("the reader of {topic} had lost a writer that still sends: it is replaced"));
+            }
             let seen = match &mut watch {
                 Some(watch) => watch.look(&self.ours()),
                 None => super::health::Observations::default(),
@@ -180,7 +184,7 @@ impl Supervisor {
                 self.diagnostics.tell("link", Health::Warning, format!("{fault}: rebuilding the link"), &[]);
                 self.logger.warn(format!("{fault}: rebuilding the link"));
             } else if watch.is_some() && self.link.participant().is_some() {
-                self.tell_link(watch.as_ref(), rebuilds);
+                self.tell_link(watch.as_ref(), rebuilds, replaced);
                 continue;
             }
             drop(watch.take());
@@ -209,7 +213,7 @@ impl Supervisor {
         Ours::new(&self.link.identity().full_name(), self.link.interfaces().into_iter().map(|(topic, _)| topic))
     }
 
-    fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32) {
+    fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32, replaced: u32) {
         let Some(watch) = watch else { return };
         let (malformed, others) = complaints();
         let (guard, refused) = match self.link.guard() {
@@ -221,6 +225,7 @@ impl Supervisor {
             ("peers", watch.peers().to_string()),
             ("lost peers", watch.lost().to_string()),
             ("times rebuilt", rebuilds.to_string()),
+            ("readers replaced", replaced.to_string()),
             ("packet guard", guard),
             ("packets refused or lost by the kernel", refused.to_string()),
             ("malformed packets", malformed.to_string()),

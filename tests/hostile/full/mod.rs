@@ -10,3 +10,4 @@ mod network;
 mod recorder;
 #[cfg(feature = "security")]
 mod security;
+mod silence;

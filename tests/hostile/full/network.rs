@@ -62,6 +62,11 @@ impl Operator {
         self.open.store(true, Ordering::Relaxed);
     }
 
+    /// Commands a closed valve from here on.
+    pub fn closes(&self) {
+        self.open.store(false, Ordering::Relaxed);
+    }
+
     /// Ends; returns when the last command was sent, s since the epoch. An error where it could not begin.
     pub fn falls_silent(self) -> std::thread::Result<f64> {
         self.stop.store(true, Ordering::Relaxed);
@@ -96,7 +101,7 @@ fn command(options: ros2_client::ContextOptions, open: &AtomicBool, stop: &Atomi
     last
 }
 
-fn now() -> f64 {
+pub fn now() -> f64 {
     std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs_f64()
 }
 
@@ -114,7 +119,7 @@ pub struct Endpoint {
 
 impl Endpoint {
     /// The first twelve bytes of the identity.
-    fn participant(&self) -> &[u8] {
+    pub fn participant(&self) -> &[u8] {
         &self.identity[..12]
     }
 }
@@ -195,14 +200,23 @@ impl Body {
 }
 
 pub fn heartbeat(reader: &Endpoint, writer: &Endpoint, last: i64, count: u32) -> Vec<u8> {
-    message(writer, reader, 0x07, &Body::of(reader, writer).number(1).number(last).word(count).0)
+    heartbeat_from(reader, writer, [1, last], count)
 }
 
-fn gap(reader: &Endpoint, writer: &Endpoint, start: i64, base: i64) -> Vec<u8> {
+pub fn heartbeat_from(reader: &Endpoint, writer: &Endpoint, [first, last]: [i64; 2], count: u32) -> Vec<u8> {
+    message(writer, reader, 0x07, &Body::of(reader, writer).number(first).number(last).word(count).0)
+}
+
+/// All samples before `base` are acknowledged, in the name of the reader.
+pub fn acknowledged(reader: &Endpoint, writer: &Endpoint, base: i64, count: u32) -> Vec<u8> {
+    message(reader, writer, 0x06, &Body::of(reader, writer).number(base).word(0).word(count).0)
+}
+
+pub fn gap(reader: &Endpoint, writer: &Endpoint, start: i64, base: i64) -> Vec<u8> {
     message(writer, reader, 0x08, &Body::of(reader, writer).number(start).number(base).word(0).0)
 }
 
-fn fragment(reader: &Endpoint, writer: &Endpoint, sample: i64, bytes: u32) -> Vec<u8> {
+pub fn fragment(reader: &Endpoint, writer: &Endpoint, sample: i64, bytes: u32) -> Vec<u8> {
     let head = Body(vec![0, 0, 28, 0]);
     let ids = Body::of(reader, writer).0;
     let mut body = Body([head.0, ids].concat()).number(sample).word(1).half(1).half(256).word(bytes);
@@ -216,7 +230,7 @@ fn fragment_asked_for(reader: &Endpoint, writer: &Endpoint, sample: i64, first: 
 }
 
 /// A stranger that looks around until it has seen what it wants, makes packets of that, and sends each to where it belongs.
-fn stranger(
+pub fn stranger(
     network: &Network,
     has_seen: impl Fn(&Seen) -> bool + Send + 'static,
     packets: impl Fn(&Seen) -> Vec<(Vec<u8>, Vec<SocketAddr>)> + Send + 'static,
@@ -238,7 +252,7 @@ fn stranger(
 }
 
 /// Number of endpoints of a topic.
-fn count(endpoints: &[Endpoint], topic: &str) -> usize {
+pub fn count(endpoints: &[Endpoint], topic: &str) -> usize {
     endpoints.iter().filter(|endpoint| endpoint.topic == topic).count()
 }
 
@@ -258,7 +272,7 @@ pub fn pairs(seen: &Seen) -> Vec<(&Endpoint, &Endpoint)> {
 }
 
 /// The participant that commands.
-fn operator_of(seen: &Seen) -> Option<&[u8]> {
+pub fn operator_of(seen: &Seen) -> Option<&[u8]> {
     seen.writers.iter().find(|writer| writer.topic == COMMANDS).map(|writer| writer.participant())
 }
 
