@@ -34,6 +34,8 @@ pub(super) fn built_in() -> Vec<AnyEffect> {
         Arc::new(shuttle_valve::ShuttleValve),
         Arc::new(vented_rod_side::VentedRodSide),
         Arc::new(joint_spring::JointSpring),
+        Arc::new(valve_area_law::ValveAreaLaw),
+        Arc::new(valve_edge_curves::ValveEdgeCurves),
         Arc::new(valve_dead_zone::ValveDeadZone),
         Arc::new(valve_directional_gain::ValveDirectionalGain),
         Arc::new(valve_gain_curve::ValveGainCurve),

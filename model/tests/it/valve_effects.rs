@@ -133,6 +133,45 @@ fn a_gain_curve_bends_the_opening_but_not_the_bypass() {
     }
 }
 
+/// \[B\] Eq. 9 with its travel ending at 0.9: at half opening a quarter of sqrt((1 - 0.9^4)/(1 - 0.45^4)), at full opening as before.
+#[test]
+fn an_area_law_is_quadratic_and_leaves_the_full_opening() {
+    let model = arm_with("valve_area_law", CYLINDER, &[1.0]);
+    let maximum = model.machine.cylinders[0].chambers.unwrap().full_command();
+    let system = System::new(&model);
+    let mut workspace = system.workspace();
+    let half = 0.25 * ((1.0 - 0.9_f64.powi(4)) / (1.0 - 0.45_f64.powi(4))).sqrt();
+    for (state, mut inputs) in situations(22).take(3) {
+        for (travel, area) in [(0.5, half), (-0.5, -half), (1.0, 1.0), (-1.0, -1.0)] {
+            inputs.orifice_area[0] = travel * maximum;
+            system.observe(&mut workspace, &model.parameter_values(), &state, &inputs, &mut [0.0; 5]);
+            let opening = workspace.situation.pistons[0].opening / maximum;
+            assert!((opening - area).abs() < 1e-12, "{travel}: {opening} for {area}");
+        }
+    }
+}
+
+/// At half opening an edge with a curve passes what it passes with a gain that is a/2 + b/4 larger.
+#[test]
+fn every_edge_has_a_curve_of_its_own() {
+    let nominal = built_in("zx30u-arm").unwrap();
+    let maximum = nominal.machine.cylinders[0].chambers.unwrap().full_command();
+    let edges = [("flow_gain_cap", 0.5), ("flow_gain_rod", 0.5), ("flow_gain_cap", -0.5), ("flow_gain_rod", -0.5)];
+    for (edge, (gain, side)) in edges.into_iter().enumerate() {
+        let mut values = [0.0; 8];
+        values[2 * edge..2 * edge + 2].copy_from_slice(&[1e-3, -4e-4]);
+        let curved = arm_with("valve_edge_curves", CYLINDER, &values);
+        let name = format!("arm.{gain}");
+        let wider = arm_with_scaled(&name, 1.0 + 4e-4 / nominal.value_of(&name).unwrap());
+        for (state, mut inputs) in situations(22) {
+            inputs.orifice_area[0] = side * maximum;
+            assert_same_flows(&rows(&curved, &state, &inputs), &rows(&wider, &state, &inputs));
+            inputs.orifice_area[0] = -side * maximum;
+            assert_same_flows(&rows(&curved, &state, &inputs), &rows(&nominal, &state, &inputs));
+        }
+    }
+}
+
 /// Within the overlap the bypass is fully open; beyond it loses what a nominal one loses that much earlier.
 #[test]
 fn an_overlapped_bypass_closes_later() {
