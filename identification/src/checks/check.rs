@@ -10,6 +10,7 @@ use super::error::{FEWEST_SAMPLES, SHORTEST};
 use super::runs::range;
 use super::stuck::{never_changes, stuck_position, stuck_pressure};
 use super::swapped::swapped_chambers;
+use super::swapped_forces::swapped_by_force;
 
 /// Factor over its noise by which a signal must move to contain information on dynamics.
 const LEAST_MOTION: f64 = 20.0;
@@ -179,10 +180,15 @@ impl Checks<'_> {
         if let Some(stretch) = stuck_position(time, displacement, opening, &[cap, rod], self.time_scale) {
             self.refuse(stretch.error(self.recording, name("displacement"), "m"))?;
         }
-        if let Some(shares) = swapped_chambers(self.recording, signals, opening, chambers, self.time_scale) {
+        let by_flow = swapped_chambers(self.recording, signals, opening, chambers, self.time_scale);
+        let by_force = || swapped_by_force(time, signals, chambers, self.time_scale);
+        let found =
+            by_flow.map(|shares| ("flow", shares)).or_else(|| by_force().map(|shares| ("pressure force", shares)));
+        if let Some((what, shares)) = found {
             self.refuse(CheckError::SwappedChambers {
                 source_name: self.source(),
                 cylinder: signals.name.clone(),
+                what,
                 given: 100.0 * shares.given,
                 swapped: 100.0 * shares.swapped,
             })?;

@@ -158,16 +158,18 @@ pub enum CheckError {
     },
     /// The sensors of the two chambers are swapped.
     #[error(
-        "{source_name}: cap_pressure and rod_pressure of {cylinder} look swapped: as given, {given:.0} % of the piston's flow stays unexplained; swapped, {swapped:.0} %"
+        "{source_name}: cap_pressure and rod_pressure of {cylinder} look swapped: as given, {given:.0} % of the piston's {what} stays unexplained; swapped, {swapped:.0} %"
     )]
     SwappedChambers {
         /// The recording.
         source_name: String,
         /// The cylinder.
         cylinder: String,
-        /// Unexplained flow as recorded, %.
+        /// What they leave unexplained: flow or force.
+        what: &'static str,
+        /// Unexplained as recorded, %.
         given: f64,
-        /// Unexplained flow with the pressures exchanged, %.
+        /// Unexplained with the pressures exchanged, %.
         swapped: f64,
     },
     /// Two sensors whose readings are identical to the last digit.

@@ -11,6 +11,7 @@ mod runs;
 mod shared_readings;
 mod stuck;
 mod swapped;
+mod swapped_forces;
 
 pub use check::check;
 pub use error::{CheckError, OVERRULABLE};

@@ -10,17 +10,17 @@ use excavator_model::recording::{CylinderSignals, Recording, is_measured};
 use super::opening::{largest, open_one_way};
 
 /// Time over which flows are averaged, s: longer than the compression of oil takes, shorter than a stroke.
-const WINDOW: f64 = 0.1;
+pub(super) const WINDOW: f64 = 0.1;
 
 /// Fewest windows for a result.
 const FEWEST: usize = 20;
 
 /// Factor by which the given pressures must leave more unexplained than the swapped ones. Effects that this check ignores (check
 /// valves, a pump line that is not measured at the valve) affect both alike.
-const CLEARLY: f64 = 4.0;
+pub(super) const CLEARLY: f64 = 4.0;
 
 /// The given pressures must also leave at least this share: if they explain most of the flow, nothing is wrong.
-const MUCH: f64 = 0.1;
+pub(super) const MUCH: f64 = 0.1;
 
 /// Unexplained squares of the piston's flow, as a share.
 #[derive(Debug, Clone, Copy, PartialEq)]

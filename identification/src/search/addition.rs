@@ -30,10 +30,22 @@ impl Addition {
     }
 }
 
-/// Every candidate effect, and every loss of the given model, at every place of the machine where it can act and is not
-/// present yet.
-pub fn additions(model: &Model) -> Vec<Addition> {
-    of_families(model, Family::is_candidate)
+/// Every candidate effect, and every loss of the given model, at every place of the machine where it can act, is not
+/// present yet, and could show in these recordings.
+pub fn additions(model: &Model, recordings: &[&Recording]) -> Vec<Addition> {
+    let warms_up = warming(recordings) >= LEAST_WARMING;
+    let shows = |one: &Addition| warms_up || one.physics.formula().is_some() || !one.physics.reads_temperature();
+    of_families(model, Family::is_candidate).into_iter().filter(shows).collect()
+}
+
+/// Least range of the oil temperature over all recordings for which its laws are tried, K: a viscosity changes over it by an
+/// eighth, and at less a law of the temperature is only another coefficient.
+const LEAST_WARMING: f64 = 3.0;
+
+/// Range of the oil temperature over all recordings, K; nothing where none has it.
+fn warming(recordings: &[&Recording]) -> f64 {
+    let values = || recordings.iter().flat_map(|one| one.oil_temperature.iter().copied()).filter(|one| one.is_finite());
+    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
 }
 
 /// Every structural effect at every place where it can act and is not present yet.
@@ -143,10 +155,30 @@ mod tests {
     #[test]
     fn a_structural_effect_is_no_candidate() {
         let model = built_in("zx30u-arm").unwrap();
-        let additions = additions(&model);
+        let additions = additions(&model, &[]);
         let tries = |name: &str| additions.iter().any(|addition| addition.physics.card().name == name);
         assert!(tries("valve_dead_zone") && !tries("pressure_compensation"));
         assert!(structural_additions(&model).iter().any(|one| one.physics.card().name == "pressure_compensation"));
         assert_eq!(model.parse_addition("pressure_compensation@arm").unwrap().len(), 1);
+    }
+
+    #[test]
+    fn laws_of_the_temperature_are_tried_where_the_oil_warms_up() {
+        let model = built_in("zx30u-arm").unwrap();
+        let mut recording = Recording::unmeasured("warming", vec![0.0, 1.0], &["arm"]);
+        let reads = |one: &Addition| one.physics.reads_temperature();
+        assert!(!additions(&model, &[&recording]).iter().any(reads), "no temperature");
+        recording.oil_temperature = vec![40.0, 41.0];
+        assert!(!additions(&model, &[&recording]).iter().any(reads), "warm oil");
+        recording.oil_temperature = vec![20.0, 41.0];
+        let found: Vec<String> =
+            additions(&model, &[&recording]).iter().filter(|one| reads(one)).map(|one| one.name(&model)).collect();
+        let expected = [
+            "viscosity_temperature@arm",
+            "seal_friction_temperature@arm",
+            "bulk_modulus_temperature@arm",
+            "bulk_modulus_temperature@pump",
+        ];
+        assert_eq!(found, expected);
     }
 }

@@ -28,7 +28,7 @@ impl Stepwise<'_> {
         }
         // What changes the meaning of a signal was taken as measured. It counts if it does about as much alone.
         let explained = pool.given().fit.loss() - pool.trials[verdict.best].fit.loss();
-        let unread = unread(&pool.given().fit.model);
+        let unread = unread(&pool.given().fit.model, pool.identification());
         self.screen(0, unread, explained.max(self.policy.least_improvement), pool);
         true
     }

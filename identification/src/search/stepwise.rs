@@ -84,7 +84,8 @@ impl Stepwise<'_> {
     }
 
     fn extend(&self, number: usize, is_wanted: &dyn Fn(&Addition) -> bool, pool: &mut Pool<'_>) {
-        let wanted = additions(&pool.trials[number].fit.model).into_iter().filter(is_wanted).collect();
+        let wanted = additions(&pool.trials[number].fit.model, pool.identification());
+        let wanted = wanted.into_iter().filter(is_wanted).collect();
         self.screen(number, wanted, self.policy.least_improvement, pool);
     }
 

@@ -27,15 +27,17 @@ fn catalogue() -> Catalogue {
 
 /// The arm with `friction` N of that law at 40 °C, steered by two sines while the oil warms by 40 K.
 fn warming(friction: f64, tempo: f64, seed: u64) -> Recording {
+    warm_up("cold_friction", &[("k", friction), ("b", 0.05)], tempo, seed)
+}
+
+/// The arm with an effect of the temperature, steered by two sines while the oil warms by 40 K.
+fn warm_up(law: &str, values: &[(&str, f64)], tempo: f64, seed: u64) -> Recording {
     let machine = Model { catalogue: catalogue(), ..off_the_data_sheet("zx30u-arm", 0.1) };
-    let law = machine.catalogue.find("cold_friction").unwrap();
+    let law = machine.catalogue.find(law).unwrap();
     let mut machine = machine.with_effect(&law, Site::Cylinder(0)).unwrap();
-    for parameter in &mut machine.effects.last_mut().unwrap().parameters {
-        match &*parameter.card.name {
-            "k" => parameter.value = friction,
-            "b" => parameter.value = 0.05,
-            _ => {}
-        }
+    for (name, value) in values {
+        machine.effects.last_mut().unwrap().parameters.iter_mut().find(|one| one.card.name == *name).unwrap().value =
+            *value;
     }
     let mut recording = steering(tempo, 24.0);
     recording.oil_temperature = recording.time.iter().map(|t| 20.0 + 40.0 * t / 24.0).collect();
@@ -90,6 +92,28 @@ fn a_repair_shows_in_its_parameter_alone() {
 /// `tests/run --all` runs these.
 mod full {
     use super::*;
+
+    /// Warm-ups of a machine with a law of the catalogue, diagnosed.
+    fn assert_named(law: &str, parameter: &str, fall: f64) {
+        let (fitted, judging) =
+            (warm_up(law, &[(parameter, fall)], 2.9, 1), warm_up(law, &[(parameter, fall)], 3.4, 2));
+        let model = built_in("zx30u-arm").unwrap();
+        let found = diagnose(&model, &[&fitted], &[&judging], &DiagnosisSettings::default(), &|_, _| {}).unwrap();
+        let names: Vec<&str> = found.selected().iter().map(|one| one.name()).collect();
+        assert_eq!((found.verdict.kind, &names[..]), (Kind::MissingEffect, &[law][..]), "{:?}", found.verdict.reasons);
+        let value = found.best().fit.model.value_of(&format!("arm.{parameter}")).unwrap();
+        assert!((value / fall - 1.0).abs() < 0.1, "{value}, true {fall}");
+    }
+
+    #[test]
+    fn seals_that_rub_more_when_they_are_cold_are_named_from_two_warm_ups() {
+        assert_named("seal_friction_temperature", "seal_friction_fall", 0.05);
+    }
+
+    #[test]
+    fn oil_that_is_thicker_when_it_is_cold_is_named_from_two_warm_ups() {
+        assert_named("viscosity_temperature", "viscosity_fall", 0.046);
+    }
 
     #[test]
     fn the_law_of_the_temperature_is_named() {

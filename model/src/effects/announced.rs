@@ -44,7 +44,8 @@ pub fn unannounced(physics: &dyn Effect, machine: &Machine, site: Site, paramete
         }
         let mut adjusted = now.clone();
         hooks.adjust(site, parameters, &mut adjusted);
-        if !physics.adjusts_others() && adjusted.pistons != now.pistons {
+        let is_as_before = adjusted.pistons == now.pistons && adjusted.pump_oil == now.pump_oil;
+        if !physics.adjusts_others() && !is_as_before {
             return unannounced("adjust", "adjusts_others");
         }
         let mut remembered = vec![0.0; physics.states()];

@@ -59,6 +59,7 @@ impl Physics for AsymmetricFriction {
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        rows.piston_force[cylinder] -= parameters[0] * now.pistons[cylinder].direction().positive_part();
+        let piston = &now.pistons[cylinder];
+        rows.piston_force[cylinder] -= piston.rubbing(parameters[0]) * piston.direction().positive_part();
     }
 }

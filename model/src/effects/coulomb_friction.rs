@@ -56,6 +56,6 @@ impl Physics for CoulombFriction {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        rows.piston_force[cylinder] -= parameters[0] * piston.direction();
+        rows.piston_force[cylinder] -= piston.rubbing(parameters[0]) * piston.direction();
     }
 }

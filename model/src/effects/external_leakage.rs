@@ -61,7 +61,8 @@ impl Physics for ExternalLeakage {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        rows.cap_flow[cylinder] -= parameters[0] * piston.cap_pressure;
-        rows.rod_flow[cylinder] -= parameters[1] * piston.rod_pressure;
+        let [cap, rod] = [parameters[0], parameters[1]].map(|coefficient| piston.warmth.oil.leaking(coefficient));
+        rows.cap_flow[cylinder] -= cap * piston.cap_pressure;
+        rows.rod_flow[cylinder] -= rod * piston.rod_pressure;
     }
 }

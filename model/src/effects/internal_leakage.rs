@@ -46,7 +46,7 @@ impl Physics for InternalLeakage {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        let flow = parameters[0] * (piston.cap_pressure - piston.rod_pressure);
+        let flow = piston.warmth.oil.leaking(parameters[0]) * (piston.cap_pressure - piston.rod_pressure);
         rows.cap_flow[cylinder] -= flow;
         rows.rod_flow[cylinder] += flow;
     }

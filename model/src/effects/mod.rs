@@ -19,6 +19,7 @@ mod site;
 
 mod accumulator;
 mod asymmetric_friction;
+mod bulk_modulus_temperature;
 mod bypass_overlap;
 mod cavitation;
 mod charge_check_valve;
@@ -55,6 +56,7 @@ mod pressure_sensor_offset;
 mod pump_drive;
 mod pump_leakage;
 mod relief_valve;
+mod seal_friction_temperature;
 mod sensor_delay;
 mod shuttle_valve;
 mod spool_sensor_lead;
@@ -70,6 +72,7 @@ mod valve_lag;
 mod valve_leakage;
 mod valve_null;
 mod vented_rod_side;
+mod viscosity_temperature;
 mod viscous_damping;
 
 pub use crate::machine::Growth;

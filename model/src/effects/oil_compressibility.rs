@@ -57,12 +57,13 @@ impl Physics for OilCompressibility {
         match site {
             Site::Cylinder(cylinder) => {
                 let piston = &now.pistons[cylinder];
-                rows.cap_compliance[cylinder] += piston.cap_volume / parameters[0];
-                rows.rod_compliance[cylinder] += piston.rod_volume / parameters[0];
+                let oil = &piston.warmth.oil;
+                rows.cap_compliance[cylinder] += oil.yielding(piston.cap_volume / parameters[0]);
+                rows.rod_compliance[cylinder] += oil.yielding(piston.rod_volume / parameters[0]);
             }
             Site::PumpLine => {
                 if let Supply::PumpLine(line) = now.machine.supply {
-                    rows.pump_compliance += parameters[0].recip() * line.volume;
+                    rows.pump_compliance += now.pump_oil.yielding(parameters[0].recip() * line.volume);
                 }
             }
             Site::Machine => {}

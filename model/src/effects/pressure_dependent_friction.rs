@@ -58,6 +58,6 @@ impl Physics for PressureDependentFriction {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let pressing = piston.cap_pressure.positive_part() + piston.rod_pressure.positive_part();
-        rows.piston_force[cylinder] -= parameters[0] * pressing * piston.direction();
+        rows.piston_force[cylinder] -= piston.rubbing(parameters[0]) * pressing * piston.direction();
     }
 }

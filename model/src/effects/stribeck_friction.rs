@@ -78,7 +78,7 @@ impl Physics for StribeckFriction {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let relative = piston.velocity / parameters[1];
-        let level = parameters[0] * (-(relative * relative)).exp();
+        let level = piston.rubbing(parameters[0]) * (-(relative * relative)).exp();
         rows.piston_force[cylinder] -= level * piston.direction();
     }
 }

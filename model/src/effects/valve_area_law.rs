@@ -21,7 +21,9 @@ static CARD: Card = Card {
     summary: text("The open area grows with the square of spool travel, as over round ports."),
     equation: text("opening = u (1 - k + k x sqrt((1 - z^4)/(1 - (z x)^4))), x = |u|/umax, z = 0.9"),
     source: text("[B] Eq. 9. As printed, the area is infinite at full travel: z keeps it finite"),
-    shows: text("Speed over opening times root of the pressure drop grows with opening, the same way in both directions."),
+    shows: text(
+        "Speed over opening times root of the pressure drop grows with opening, the same way in both directions.",
+    ),
     experiment: text("Trapezoids of many amplitudes up to the full opening."),
     energy: text("Changes the supply through the valve; dissipates nothing itself."),
 };

@@ -69,9 +69,7 @@ impl Physics for ValveEdgeCurves {
         let (tank, pump) = (now.tank_pressure, now.pump_pressure);
         let [cap_opening, rod_opening] = piston.edges();
         let travel = piston.opening.abs() / now.largest_opening(site);
-        let gain = |first: usize, opening: T| {
-            travel * (parameters[first] + parameters[first + 1] * travel) * opening
-        };
+        let gain = |first: usize, opening: T| travel * (parameters[first] + parameters[first + 1] * travel) * opening;
         if piston.opening.value() >= 0.0 {
             let drawn = gain(0, cap_opening) * piston.drawn_root(pump - piston.cap_pressure);
             rows.cap_flow[cylinder] += drawn;

@@ -94,10 +94,11 @@ impl Physics for ValveLeakage {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let (pump, tank) = (now.pump_pressure, now.tank_pressure);
-        let pump_to_cap = parameters[0] * (pump - piston.cap_pressure);
-        let pump_to_rod = parameters[2] * (pump - piston.rod_pressure);
-        rows.cap_flow[cylinder] += pump_to_cap - parameters[1] * (piston.cap_pressure - tank);
-        rows.rod_flow[cylinder] += pump_to_rod - parameters[3] * (piston.rod_pressure - tank);
+        let leaking = |number: usize| piston.warmth.oil.leaking(parameters[number]);
+        let pump_to_cap = leaking(0) * (pump - piston.cap_pressure);
+        let pump_to_rod = leaking(2) * (pump - piston.rod_pressure);
+        rows.cap_flow[cylinder] += pump_to_cap - leaking(1) * (piston.cap_pressure - tank);
+        rows.rod_flow[cylinder] += pump_to_rod - leaking(3) * (piston.rod_pressure - tank);
         rows.pump_flow -= pump_to_cap + pump_to_rod;
     }
 }

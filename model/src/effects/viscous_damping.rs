@@ -46,6 +46,6 @@ impl Physics for ViscousDamping {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        rows.piston_force[cylinder] -= parameters[0] * piston.velocity;
+        rows.piston_force[cylinder] -= piston.warmth.oil.dragging(parameters[0]) * piston.velocity;
     }
 }

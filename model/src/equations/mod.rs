@@ -13,6 +13,7 @@ mod situation;
 pub mod smooth;
 mod system;
 mod valves;
+mod warmth;
 
 pub use channel::Channel;
 pub use inputs::{ImposedState, Inputs, USUAL_OIL_TEMPERATURE};
@@ -24,3 +25,4 @@ pub use rounding::{EndStopCorrection, Rounding};
 pub use rows::Rows;
 pub use situation::{Piston, Situation};
 pub use system::{KnownCylinder, System, Workspace};
+pub use warmth::{Oil, Warmth};

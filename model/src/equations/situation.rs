@@ -3,6 +3,7 @@
 use super::Rounding;
 use super::inputs::USUAL_OIL_TEMPERATURE;
 use super::smooth::{LAMINAR_PRESSURE, at_most};
+use super::warmth::{Oil, Warmth};
 use crate::effects::Site;
 use crate::machine::{Chambers, Machine, Size};
 use crate::scalar::{Dual, Scalar, constant};
@@ -53,6 +54,8 @@ pub struct Piston<T> {
     pub hose_resistance: Option<T>,
     /// How the corners of friction and of flow are rounded.
     pub rounding: Rounding<T>,
+    /// What the temperature does to the oil and the seals of this cylinder.
+    pub warmth: Warmth<T>,
     /// Force that drives a cylinder without chambers, N: measured on the rod; for an imposed motion it includes the pressure
     /// force.
     pub rod_force: T,
@@ -83,6 +86,7 @@ impl<T> Piston<T> {
             compensator_margin: self.compensator_margin.as_ref().map(&of),
             hose_resistance: self.hose_resistance.as_ref().map(&of),
             rounding: self.rounding.each(&of),
+            warmth: self.warmth.each(&of),
             rod_force: of(&self.rod_force),
         }
     }
@@ -92,6 +96,11 @@ impl<T: Scalar> Piston<T> {
     /// `sgn(v)`, rounded as for friction.
     pub fn direction(&self) -> T {
         self.rounding.sign(self.velocity)
+    }
+
+    /// Friction of seals at the temperature of the oil, N, of one that is `force` at the usual temperature.
+    pub fn rubbing(&self, force: T) -> T {
+        self.warmth.seal_friction.map_or(force, |factor| force * factor)
     }
 
     /// Openings of the edges at the cap and at the rod side, m², with the sign of the motion. An opening that an effect reduces
@@ -142,6 +151,8 @@ pub struct Situation<'m, T> {
     pub pump_flow: T,
     /// Oil temperature, °C.
     pub oil_temperature: T,
+    /// What the temperature does to the oil of the pump line.
+    pub pump_oil: Oil<T>,
 }
 
 impl<'m, T: Scalar> Situation<'m, T> {
@@ -170,6 +181,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             compensator_margin: None,
             hose_resistance: None,
             rounding: Rounding::of_the_equations(&Size::REFERENCE),
+            warmth: Warmth::USUAL,
             rod_force: zero,
         };
         Situation {
@@ -182,6 +194,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             tank_pressure: zero,
             pump_flow: zero,
             oil_temperature: T::from(USUAL_OIL_TEMPERATURE),
+            pump_oil: Oil::USUAL,
         }
     }
 
@@ -209,5 +222,6 @@ impl Situation<'_, Dual> {
         self.tank_pressure = held(&other.tank_pressure);
         self.pump_flow = held(&other.pump_flow);
         self.oil_temperature = held(&other.oil_temperature);
+        self.pump_oil = other.pump_oil.each(held);
     }
 }

@@ -1,6 +1,6 @@
 //! The part of the equations in which effects act on the valves.
 
-use super::{Rounding, Situation, System};
+use super::{Oil, Rounding, Situation, System, Warmth};
 use crate::effects::{Number, Site};
 
 impl<'m> System<'m> {
@@ -48,6 +48,7 @@ impl<'m> System<'m> {
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
             piston.hose_resistance = None;
+            piston.warmth = Warmth::USUAL;
             piston.rounding = if self.as_printed { Rounding::none() } else { Rounding::of_the_equations(size) };
         }
         for &number in &self.adjusting {
@@ -66,6 +67,7 @@ impl<'m> System<'m> {
             piston.supply_opening = piston.opening;
             piston.return_opening = piston.opening;
         }
+        situation.pump_oil = Oil::USUAL;
         for &number in &self.adjusting {
             let effect = &self.model.effects[number];
             let (first, last) = self.parameter_ranges[number];

@@ -22,4 +22,5 @@ mod reference_solutions;
 mod sensitivities;
 mod signals;
 mod similarity;
+mod temperature_laws;
 mod valve_effects;

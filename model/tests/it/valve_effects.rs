@@ -5,7 +5,7 @@ use crate::common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{ActsOn, Card, Catalogue, Family, Number, Site};
-use excavator_model::equations::{Inputs, Rows, Situation, System};
+use excavator_model::equations::{Inputs, Rows, Situation, System, Warmth};
 use excavator_model::machine::Size;
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
 
@@ -202,7 +202,7 @@ fn has_a_say(card: &Card) -> bool {
 }
 
 /// Spools, openings and what else is adjusted are asked of effects of valves and of the pump line alone, and of those that round a
-/// corner: no other effect may have something to say there that nobody hears.
+/// corner: no other effect may have something to say there that nobody hears. What the temperature does is asked of all.
 #[test]
 fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
     for model in common::machines() {
@@ -218,6 +218,7 @@ fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
                 let mut situation = Situation::<f64>::empty(&model.machine);
                 assert_eq!(hooks.opening(site, &typical, 3e-5, &situation), 3e-5, "{name}");
                 hooks.adjust(site, &typical, &mut situation);
+                situation.pistons.iter_mut().for_each(|piston| piston.warmth = Warmth::USUAL);
                 assert_eq!(situation.pistons, Situation::<f64>::empty(&model.machine).pistons, "{name}");
             }
         }

@@ -132,7 +132,7 @@ impl<'a> Grounds<'a> {
 
     /// The most promising sets with one effect more.
     fn children(&self, parent: &Node) -> Vec<Node> {
-        let begun = flow_additions(&parent.fit.model).into_par_iter().filter_map(|addition| {
+        let begun = flow_additions(&parent.fit.model, self.recordings).into_par_iter().filter_map(|addition| {
             let extended = parent.fit.model.with_effect(&addition.physics, addition.site).ok()?;
             let starts = plain_starts(&extended, self.recordings);
             let steps: Vec<Step> = starts

@@ -76,11 +76,11 @@ pub(super) fn is_read(one: &Addition) -> bool {
 }
 
 /// Additions to the flow balances.
-fn flow_additions(model: &Model) -> Vec<Addition> {
-    additions(model).into_iter().filter(is_read).collect()
+fn flow_additions(model: &Model, recordings: &[&Recording]) -> Vec<Addition> {
+    additions(model, recordings).into_iter().filter(is_read).collect()
 }
 
 /// Additions that change the meaning of a signal. Balances that take it as measured cannot show them.
-pub(super) fn unread(model: &Model) -> Vec<Addition> {
-    additions(model).into_iter().filter(|one| !Ground::keeps_signals(&*one.physics)).collect()
+pub(super) fn unread(model: &Model, recordings: &[&Recording]) -> Vec<Addition> {
+    additions(model, recordings).into_iter().filter(|one| !Ground::keeps_signals(&*one.physics)).collect()
 }

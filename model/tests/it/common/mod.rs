@@ -183,6 +183,8 @@ pub fn random_inputs(machine: &Machine, random: &mut Random) -> Inputs<f64> {
     inputs.supply_pressure = random.between(0.0, 7e6);
     inputs.tank_pressure = random.between(0.0, 2e5);
     inputs.pump_flow = random.between(1e-4, 5e-4);
+    // From what has been drawn, so that states of machines without a temperature stay the same.
+    inputs.oil_temperature = Random(inputs.supply_pressure.to_bits()).between(-10.0, 90.0);
     inputs
 }
 
@@ -204,6 +206,7 @@ pub fn driven(
         cylinder.rod_force = time.iter().map(|&t| force(t)).collect();
     }
     recording.pump_pressure = vec![5e6; time.len()];
+    recording.oil_temperature = vec![55.0; time.len()];
     recording
 }
 
