@@ -36,6 +36,8 @@ pub enum VerbError {
     ValveTest(String),
     #[error("no model: {0}")]
     NewModel(String),
+    #[error("--signal {name}: no recording measures it; they measure {measured}")]
+    NoSignal { name: String, measured: String },
     #[error("data sheet: {0}")]
     Sheet(String),
     #[error("--catalogue {}: {reason}", path.display())]

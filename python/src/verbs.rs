@@ -70,7 +70,7 @@ impl Desk {
             let lost = content.report.lost_of_sources();
             study.lost_messages.extend(lost.iter().map(|line| format!("{}: {line}", content.signals.source)));
         }
-        self.remarks.extend(study.shared_readings());
+        self.remarks.extend(study.shared_readings(&self.usage.accept)?);
         Ok(study)
     }
 }

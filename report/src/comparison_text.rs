@@ -1,6 +1,6 @@
 //! Summarises the error of a model on a recording in plain sentences.
 
-use excavator_identification::validation::{Baselines, Comparison, PhaseShare, SignalComparison};
+use excavator_identification::validation::{Baselines, Comparison, PhaseShare, SignalComparison, WrongUnit};
 
 use super::beside::Beside;
 use super::numbers::{percent, significant};
@@ -41,7 +41,18 @@ pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> St
     let signals = comparison.signals.iter().filter(is_more);
     let worst = signals.max_by(|a, b| a.error.normalised().total_cmp(&b.error.normalised()));
     sentences.extend(worst.filter(|_| comparison.signals.len() > 1).map(worst_sentence));
+    sentences.extend(WrongUnit::of(comparison).map(|hint| wrong_unit_sentence(&hint)));
     sentences.join(" ")
+}
+
+/// Asks whether a unit was confused.
+fn wrong_unit_sentence(hint: &WrongUnit) -> String {
+    let WrongUnit { signals, recorded, read } = hint;
+    let (last, others) = (signals.last().map_or("", String::as_str), &signals[..signals.len().saturating_sub(1)]);
+    format!(
+        "Check the unit of {} and {last}: their size is that of pressures in {recorded} that are read in {read}.",
+        others.join(", ")
+    )
 }
 
 /// Share of the variance that the model explains at a mean NMSE. It is never all of it.

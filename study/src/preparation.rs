@@ -82,7 +82,7 @@ impl Preparation<'_> {
     /// A study of recordings for the fit and others that judge. What they have in common is remarked.
     ///
     /// # Errors
-    /// As [`Preparation::whole`].
+    /// As [`Preparation::whole`], and if recordings are mostly the same.
     pub fn study(&self, model: Model, [fitted, judging]: [&[PathBuf]; 2]) -> Result<Study, WorkError> {
         let mut lost_messages = Vec::new();
         let mut read = |paths: &[PathBuf]| {
@@ -97,7 +97,7 @@ impl Preparation<'_> {
         let (fitted, judging) = (read(fitted)?, read(judging)?);
         let mut study = Study::new(model, fitted, judging);
         study.lost_messages = lost_messages;
-        study.shared_readings().iter().for_each(|shared| (self.remark)(shared));
+        study.shared_readings(self.usage.accept)?.iter().for_each(|shared| (self.remark)(shared));
         Ok(study)
     }
 

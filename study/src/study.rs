@@ -1,6 +1,6 @@
 //! A question about a machine.
 
-use excavator_identification::checks::shared_readings;
+use excavator_identification::checks::{CheckError, repeated, shared_readings};
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -42,9 +42,30 @@ impl Study {
         Study::new(model, recordings, Vec::new())
     }
 
-    /// What the recordings for the fit and those for validation have in common, one line each.
-    pub fn shared_readings(&self) -> Vec<String> {
-        shared_readings(&self.fitted(), &self.judging()).iter().map(ToString::to_string).collect()
+    /// What the recordings for the fit and those for validation have in common, one line each. `accept` has the names of checks
+    /// that are overruled.
+    ///
+    /// # Errors
+    /// [`CheckError::SharedReadings`] if a recording for validation is mostly fitted, [`CheckError::GivenTwice`] if a recording is
+    /// given twice in one role.
+    pub fn shared_readings(&self, accept: &[String]) -> Result<Vec<String>, CheckError> {
+        let is_refused =
+            |error: &CheckError| error.name().is_some_and(|name| accept.iter().all(|accepted| accepted != name));
+        let mut remarks = Vec::new();
+        for shared in shared_readings(&self.fitted(), &self.judging()) {
+            let (is_most, error) = (shared.is_most(), CheckError::from(shared));
+            if is_most && is_refused(&error) {
+                return Err(error);
+            }
+            remarks.push(error.to_string());
+        }
+        for error in [self.fitted(), self.judging()].iter().filter_map(|role| repeated(role)).map(CheckError::from) {
+            if is_refused(&error) {
+                return Err(error);
+            }
+            remarks.push(error.to_string());
+        }
+        Ok(remarks)
     }
 
     pub(crate) fn fitted(&self) -> Vec<&Recording> {

@@ -27,6 +27,7 @@ PAGES = {
     "two-models": ["compare", "--model", "zx30u-arm", "--against", "refined.toml", "--bag", "validation"],
     "energy": ["energy", "--model", "zx30u-arm", "--bag", "validation"],
     "changed": ["changed", "--model", "zx30u-arm", "--before", "identification", "--after", "validation"],
+    "view": ["view", "identification", "validation", "--from-motion"],
     "refusals": ["characterise", "--model", "zx30u-arm", "validation"],
     "characterisation": ["characterise", "--model", "servo-bench", *CAMPAIGN],
     "diagnosis": ["diagnose", "--model", "zx30u-arm", *PARTS, "--save", "study.json"],

@@ -115,6 +115,10 @@ OFFLINE = {
     "model schema": Recipe(works=[["model", "schema"]], fails=["model", "schema", "--catalogue", "nowhere"], data="JSON"),
     "model reference": Recipe(works=[["model", "reference"]], fails=["model", "reference", "--catalogue", "nowhere"], data="Markdown"),
     "info": Recipe(works=[["info", BAG], ["info", "table.csv"], ["info", "table.csv", "--map", "map.toml"]], fails=["info", "nowhere"]),
+    "view": Recipe(
+        works=[["view", BAG, "identification", "--report", "view.html"]],
+        fails=["view", BAG, "--signal", "arm.cap_presure", "--report", "view-2.html"],
+    ),
     "import": Recipe(
         works=[["import", "mapped.csv", "--map", "map.toml", "-o", "imported"]],
         fails=["import", "table.csv", "-o", "imported-2"],

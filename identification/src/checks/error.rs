@@ -180,13 +180,19 @@ pub enum CheckError {
         /// Contract names of the two.
         signals: [String; 2],
     },
+    /// The recording that should judge is mostly one that is fitted.
+    #[error(transparent)]
+    SharedReadings(#[from] super::SharedReadings),
+    /// Two recordings of one role are mostly the same.
+    #[error(transparent)]
+    GivenTwice(#[from] super::GivenTwice),
     /// The recording is invalid or lacks a cylinder of the machine.
     #[error(transparent)]
     Recording(#[from] excavator_model::recording::RecordingError),
 }
 
 /// Names of the refusals that can be overruled, as in `--accept swapped-pressures`.
-pub const OVERRULABLE: [&str; 10] = [
+pub const OVERRULABLE: [&str; 11] = [
     "too-short",
     "no-motion",
     "impossible-value",
@@ -197,6 +203,7 @@ pub const OVERRULABLE: [&str; 10] = [
     "cut-off",
     "swapped-pressures",
     "same-signal",
+    "shared-readings",
 ];
 
 /// A number with four significant digits, with a power of ten only where plain digits would be hard to read.
@@ -224,6 +231,7 @@ impl CheckError {
             CheckError::Clipped { .. } => "cut-off",
             CheckError::SwappedChambers { .. } => "swapped-pressures",
             CheckError::SameSignal { .. } => "same-signal",
+            CheckError::SharedReadings(_) | CheckError::GivenTwice(_) => "shared-readings",
             CheckError::NotMeasured { .. } | CheckError::Recording(_) => return None,
         })
     }

@@ -17,4 +17,4 @@ pub use check::check;
 pub use error::{CheckError, OVERRULABLE};
 pub use impossible::remove_impossible;
 pub use remarks::{Remark, remarks};
-pub use shared_readings::{SharedReadings, shared_readings};
+pub use shared_readings::{GivenTwice, SharedReadings, repeated, shared_readings};

@@ -19,8 +19,30 @@ pub struct SharedReadings {
     pub share: f64,
 }
 
+/// Two recordings of one role that are mostly the same.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{} % of the readings of {later} are also in {earlier}: they would count twice; give each recording once", share.round())]
+pub struct GivenTwice {
+    /// The recording that was given first.
+    pub earlier: String,
+    /// The recording that repeats it.
+    pub later: String,
+    /// Share of its readings that are also in the earlier one, %.
+    pub share: f64,
+}
+
 /// Share of the readings, %, above which sharing is reported. Fewer can be a stray repetition.
 const SOME: f64 = 5.0;
+
+/// Share of the readings, %, from which a recording is no evidence of its own: more than half of it is another one.
+const MOST: f64 = 50.0;
+
+impl SharedReadings {
+    /// Whether so much is shared that the recording is no evidence of its own.
+    pub fn is_most(&self) -> bool {
+        self.share >= MOST
+    }
+}
 
 /// Readings that both have must be this many, and this share of them must follow each other in the same order. Single readings of a
 /// coarse converter are also equal by chance, but then in any order, or with many others between them if a motion was repeated.
@@ -44,6 +66,20 @@ pub fn shared_readings(identification: &[&Recording], validation: &[&Recording])
             })
         })
         .collect()
+}
+
+/// The first recording that repeats an earlier one of the same role.
+pub fn repeated(recordings: &[&Recording]) -> Option<GivenTwice> {
+    if recordings.len() < 2 {
+        return None;
+    }
+    let all: Vec<HashMap<Vec<u64>, usize>> = recordings.iter().map(|recording| single_readings(recording)).collect();
+    let mut pairs = (1..all.len()).flat_map(|later| (0..later).map(move |earlier| (earlier, later)));
+    pairs.find_map(|(earlier, later)| {
+        let share = share(&all[later], &all[earlier]).filter(|share| *share >= MOST)?;
+        let name = |number: usize| recordings[number].source.clone();
+        Some(GivenTwice { earlier: name(earlier), later: name(later), share })
+    })
 }
 
 /// Share of these readings, %, that the fitted recording has in the same order; `None` if hardly any.
@@ -129,7 +165,10 @@ mod tests {
         for step in [1e-7, 1e-5] {
             let whole = run(1, 3000, step);
             let found = shared_readings(&[&whole], &[&whole]);
-            assert!(found.len() == 1 && found[0].share > 99.0, "{found:?}");
+            assert!(found.len() == 1 && found[0].share > 99.0 && found[0].is_most(), "{found:?}");
+            let twice = repeated(&[&run(2, 3000, step), &whole, &whole]).unwrap().to_string();
+            assert!(twice.contains("100 % of the readings of run are also in run"), "{twice}");
+            assert!(repeated(&[&run(2, 3000, step), &whole]).is_none());
             // A part that overlaps by a third, at half the rate.
             let part = whole.at(&(1000..2500).step_by(2).collect::<Vec<_>>());
             let fitted = whole.at(&(0..2000).collect::<Vec<_>>());

@@ -44,9 +44,19 @@ fn warm_up(law: &str, values: &[(&str, f64)], tempo: f64, seed: u64) -> Recordin
     seen(&machine, &recording, seed)
 }
 
-fn diagnosed(model: &Model, friction: f64) -> Diagnosis {
-    let (fitted, judging) = (warming(friction, 2.9, 1), warming(friction, 3.4, 2));
+fn diagnosed(model: &Model, [fitted, judging]: [Recording; 2]) -> Diagnosis {
     diagnose(model, &[&fitted], &[&judging], &DiagnosisSettings::default(), &|_, _| {}).unwrap()
+}
+
+/// Two warm-ups with `friction` N.
+fn warm_ups(friction: f64) -> [Recording; 2] {
+    [warming(friction, 2.9, 1), warming(friction, 3.4, 2)]
+}
+
+/// The same without a sensor for the temperature: no law of the catalogue can follow it.
+fn without_temperature(mut recordings: [Recording; 2]) -> [Recording; 2] {
+    recordings.iter_mut().for_each(|one| one.oil_temperature.fill(f64::NAN));
+    recordings
 }
 
 /// Largest fall of friction for which constant parameters leave little more than noise.
@@ -54,7 +64,7 @@ const WEAK: f64 = 25.0;
 
 #[test]
 fn an_adequate_model_whose_friction_drifts_is_not_called_adequate() {
-    let found = diagnosed(&built_in("zx30u-arm").unwrap(), WEAK);
+    let found = diagnosed(&built_in("zx30u-arm").unwrap(), without_temperature(warm_ups(WEAK)));
     assert_eq!(found.verdict.kind, Kind::Unexplained, "{:?}", found.verdict.reasons);
     assert!(matches!(found.verdict.reasons[0], Reason::ParametersDrift { .. }), "{:?}", found.verdict.reasons);
     let first = &found.verdict.differing().unwrap()[0];
@@ -64,7 +74,7 @@ fn an_adequate_model_whose_friction_drifts_is_not_called_adequate() {
 
 #[test]
 fn a_machine_that_stays_as_it_is_does_not_drift() {
-    let found = diagnosed(&built_in("zx30u-arm").unwrap(), 0.0);
+    let found = diagnosed(&built_in("zx30u-arm").unwrap(), warm_ups(0.0));
     assert_eq!(found.verdict.kind, Kind::Adequate, "{:?}", found.verdict.reasons);
 }
 
@@ -95,10 +105,8 @@ mod full {
 
     /// Warm-ups of a machine with a law of the catalogue, diagnosed.
     fn assert_named(law: &str, parameter: &str, fall: f64) {
-        let (fitted, judging) =
-            (warm_up(law, &[(parameter, fall)], 2.9, 1), warm_up(law, &[(parameter, fall)], 3.4, 2));
-        let model = built_in("zx30u-arm").unwrap();
-        let found = diagnose(&model, &[&fitted], &[&judging], &DiagnosisSettings::default(), &|_, _| {}).unwrap();
+        let recordings = [(2.9, 1), (3.4, 2)].map(|(tempo, seed)| warm_up(law, &[(parameter, fall)], tempo, seed));
+        let found = diagnosed(&built_in("zx30u-arm").unwrap(), recordings);
         let names: Vec<&str> = found.selected().iter().map(|one| one.name()).collect();
         assert_eq!((found.verdict.kind, &names[..]), (Kind::MissingEffect, &[law][..]), "{:?}", found.verdict.reasons);
         let value = found.best().fit.model.value_of(&format!("arm.{parameter}")).unwrap();
@@ -115,11 +123,14 @@ mod full {
         assert_named("viscosity_temperature", "viscosity_fall", 0.046);
     }
 
+    /// A law of one's own and one of the catalogue that say the same are tied, or either is named: never both.
     #[test]
-    fn the_law_of_the_temperature_is_named() {
+    fn a_law_of_ones_own_is_named_or_tied_with_the_one_of_the_catalogue() {
         let model = Model { catalogue: catalogue(), ..built_in("zx30u-arm").unwrap() };
-        let found = diagnosed(&model, 400.0);
+        let found = diagnosed(&model, warm_ups(400.0));
         let names: Vec<&str> = found.selected().iter().map(|one| one.name()).collect();
-        assert_eq!((found.verdict.kind, &names[..]), (Kind::MissingEffect, &["cold_friction"][..]));
+        let laws = ["cold_friction", "seal_friction_temperature"];
+        assert!(names.len() == 1 && laws.contains(&names[0]), "{names:?}: {:?}", found.verdict.reasons);
+        assert_eq!(found.verdict.kind, Kind::MissingEffect, "{:?}", found.verdict.reasons);
     }
 }

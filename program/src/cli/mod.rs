@@ -109,6 +109,8 @@ pub enum Verb {
     Model(ModelVerb),
     /// What is in a bag: topics, clocks, signals, and what is missing for identification.
     Info(InfoArguments),
+    /// Plot recordings over each other, on one page, without a model.
+    View(ViewArguments),
     /// Make a bag of a table (CSV, spreadsheet, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.
     Import(ImportArguments),
     /// Make a bag whose recorder was killed readable for ros2 bag and other readers.

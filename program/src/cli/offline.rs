@@ -242,6 +242,30 @@ pub struct InfoArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// Recordings; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(required = true, num_args = 1.., value_name = "BAG")]
+    pub bags: Vec<PathBuf>,
+    /// Page to write.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: PathBuf,
+    /// Plot this signal, as in arm.cap_pressure; without, all that are measured. Repeat it for several.
+    #[arg(long, value_name = "SIGNAL")]
+    pub signal: Vec<String>,
+    /// Count time from the first motion of each recording, so that runs of one manoeuvre lie over each other.
+    #[arg(long)]
+    pub from_motion: bool,
+    /// Topic map (TOML), or `opera`; without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+    /// Namespace of the machine, for a bag of our own topics, or of OPERA's, that has several.
+    #[arg(long, value_name = "NAMESPACE")]
+    pub namespace: Option<String>,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+#[derive(Debug, Args)]
 pub struct ImportArguments {
     /// Table (.csv, .tsv, .txt, .dat, .lvm, .asc, .xlsx, .mat, .parquet; text also with .gz) or bag. Several: one recording in pieces,
     /// one after the other.

@@ -269,7 +269,7 @@ fn show_signals(signals: &SignalsInfo, mapped: &[MappedUnit]) {
 }
 
 /// Factor from SI, and the unit in which such a signal is displayed. The input of a valve has the unit that the map gives it.
-fn display_unit(name: &str, mapped: &[MappedUnit]) -> (f64, &'static str) {
+pub(super) fn display_unit(name: &str, mapped: &[MappedUnit]) -> (f64, &'static str) {
     let pressure = (PressureUnit::shown().factor(), PressureUnit::shown().symbol());
     if name.ends_with(".orifice_area") || name.ends_with(".orifice_command") {
         let given = mapped.iter().find(|mapped| mapped.signal.to_string() == name).map(|mapped| mapped.dimension);

@@ -25,6 +25,7 @@ mod saved_study;
 mod simulate;
 mod start;
 mod valve_test;
+mod view;
 
 use crate::cli::Verb;
 use crate::error::VerbError;
@@ -50,6 +51,7 @@ pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
         Verb::Effects(arguments) => effects::run(&arguments),
         Verb::Model(which) => model::run(&which),
         Verb::Info(arguments) => info::run(&arguments),
+        Verb::View(arguments) => view::run(&arguments),
         #[cfg(feature = "live")]
         Verb::Record(arguments) => node::record(arguments, &ros.arguments),
         #[cfg(feature = "live")]

@@ -103,21 +103,24 @@ fn a_cylinder_that_the_model_does_not_have_is_told_where_it_moves() {
 }
 
 #[test]
-fn a_recording_that_judges_its_own_fit_is_told() {
+fn a_recording_that_judges_its_own_fit_or_counts_twice_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "bag", &swinging(|_| ()));
-    let told = |identification: &str, validation: &str| {
+    let told = |bags: &[&str]| {
         let words = ["refine", "--model", "zx30u-arm", "-o", "m.toml", "--force", "--add", "payload"];
-        let bags = ["--identification", identification, "--validation", validation];
-        complaint(&excavator(folder.path(), &[&words[..], &bags].concat()))
+        let done = excavator(folder.path(), &[&words[..], bags].concat());
+        (done.status.code(), complaint(&done))
     };
-    let same = told("bag", "bag");
-    assert!(
-        same.contains("100 % of the readings of bag are also in bag; fitted data cannot serve as evidence"),
-        "{same}"
-    );
-    let apart = told("bag@0..3", "bag@3..5");
-    assert!(!apart.contains("no evidence"), "{apart}");
+    let line = "100 % of the readings of bag are also in bag; fitted data cannot serve as evidence";
+    let same = ["--identification", "bag", "--validation", "bag"];
+    let (code, refused) = told(&same);
+    assert!(code == Some(1) && refused.contains(line) && refused.contains("--accept shared-readings"), "{refused}");
+    let (_, accepted) = told(&[&same[..], &["--accept", "shared-readings"]].concat());
+    assert!(accepted.contains(line) && !accepted.contains("--accept"), "{accepted}");
+    let (code, twice) = told(&["--identification", "bag@0..3", "bag@0..3", "--validation", "bag@3..5"]);
+    assert!(code == Some(1) && twice.contains("they would count twice"), "{twice}");
+    let (_, apart) = told(&["--identification", "bag@0..3", "--validation", "bag@3..5"]);
+    assert!(!apart.contains("readings of"), "{apart}");
 }
 
 #[test]
