@@ -10,6 +10,7 @@ use excavator_model::recording::Recording;
 use crate::long_recording::recording_or_stretches;
 use crate::recording_part::Part;
 use crate::recordings::{Use, checked, choice};
+use crate::study::given_twice;
 use crate::{Study, WorkError};
 
 /// How recordings are found and used. Remarks for the user go to `remark`, also those that precede a failure.
@@ -71,12 +72,16 @@ impl Preparation<'_> {
         Ok((self.checked(path, recording, &report, model)?, report.lost_of_sources()))
     }
 
-    /// Several recordings.
+    /// Several recordings of one role.
     ///
     /// # Errors
-    /// As [`Preparation::whole`].
+    /// As [`Preparation::whole`], and if one is given twice.
     pub fn recordings(&self, paths: &[PathBuf], model: &Model) -> Result<Vec<Recording>, WorkError> {
-        paths.iter().map(|path| self.recording(path, model)).collect()
+        let all =
+            paths.iter().map(|path| self.recording(path, model)).collect::<Result<Vec<Recording>, WorkError>>()?;
+        let repeated = given_twice(&all.iter().collect::<Vec<_>>(), self.usage.accept)?;
+        repeated.iter().for_each(|remark| (self.remark)(remark));
+        Ok(all)
     }
 
     /// A study of recordings for the fit and others that judge. What they have in common is remarked.

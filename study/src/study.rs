@@ -49,21 +49,16 @@ impl Study {
     /// [`CheckError::SharedReadings`] if a recording for validation is mostly fitted, [`CheckError::GivenTwice`] if a recording is
     /// given twice in one role.
     pub fn shared_readings(&self, accept: &[String]) -> Result<Vec<String>, CheckError> {
-        let is_refused =
-            |error: &CheckError| error.name().is_some_and(|name| accept.iter().all(|accepted| accepted != name));
         let mut remarks = Vec::new();
         for shared in shared_readings(&self.fitted(), &self.judging()) {
             let (is_most, error) = (shared.is_most(), CheckError::from(shared));
-            if is_most && is_refused(&error) {
+            if is_most && is_refused(&error, accept) {
                 return Err(error);
             }
             remarks.push(error.to_string());
         }
-        for error in [self.fitted(), self.judging()].iter().filter_map(|role| repeated(role)).map(CheckError::from) {
-            if is_refused(&error) {
-                return Err(error);
-            }
-            remarks.push(error.to_string());
+        for role in [self.fitted(), self.judging()] {
+            remarks.extend(given_twice(&role, accept)?);
         }
         Ok(remarks)
     }
@@ -74,5 +69,22 @@ impl Study {
 
     pub(crate) fn judging(&self) -> Vec<&Recording> {
         self.validation.iter().collect()
+    }
+}
+
+/// Whether nobody overrules the refusal.
+fn is_refused(error: &CheckError, accept: &[String]) -> bool {
+    error.name().is_some_and(|name| accept.iter().all(|accepted| accepted != name))
+}
+
+/// A remark if a recording of one role repeats another and that is accepted.
+///
+/// # Errors
+/// [`CheckError::GivenTwice`] if it is not accepted.
+pub(crate) fn given_twice(recordings: &[&Recording], accept: &[String]) -> Result<Option<String>, CheckError> {
+    let found = repeated(recordings).map(CheckError::from);
+    match found {
+        Some(error) if is_refused(&error, accept) => Err(error),
+        found => Ok(found.map(|error| error.to_string())),
     }
 }

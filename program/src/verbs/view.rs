@@ -73,9 +73,21 @@ fn signals(recordings: &[Recording], mapped: &[MappedUnit], wanted: &[String]) -
     let names = if wanted.is_empty() { measured } else { wanted.to_vec() };
     let with_unit = |name: String| {
         let (factor, symbol) = display_unit(&name, mapped);
-        ViewedSignal { name, factor, symbol }
+        ViewedSignal { name, factor, symbol: on_pages(symbol) }
     };
     Ok(names.into_iter().map(with_unit).collect())
+}
+
+/// A unit as pages write it: terminals keep to plain letters.
+fn on_pages(symbol: &'static str) -> &'static str {
+    match symbol {
+        "mm2" => "mm²",
+        "m2" => "m²",
+        "m3/s" => "m³/s",
+        "deg" => "°",
+        "degC" => "°C",
+        other => other,
+    }
 }
 
 /// Time (s) at which a piston first leaves the place where it stood.

@@ -119,6 +119,9 @@ fn a_recording_that_judges_its_own_fit_or_counts_twice_is_refused() {
     assert!(accepted.contains(line) && !accepted.contains("--accept"), "{accepted}");
     let (code, twice) = told(&["--identification", "bag@0..3", "bag@0..3", "--validation", "bag@3..5"]);
     assert!(code == Some(1) && twice.contains("they would count twice"), "{twice}");
+    let words = ["identify", "--model", "zx30u-arm", "--bag", "bag", "bag"];
+    let again = complaint(&excavator(folder.path(), &words));
+    assert!(again.contains("they would count twice"), "{again}");
     let (_, apart) = told(&["--identification", "bag@0..3", "--validation", "bag@3..5"]);
     assert!(!apart.contains("readings of"), "{apart}");
 }
