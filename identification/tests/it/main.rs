@@ -15,5 +15,6 @@ mod rounded_corners;
 mod several_effects;
 mod spool_sensor_lead;
 mod story_of_the_excavator;
+mod swapped_pressures;
 mod together_only;
 mod two_joints;
