@@ -125,6 +125,7 @@ fn single_readings(recording: &Recording) -> HashMap<Vec<u64>, usize> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
