@@ -49,13 +49,19 @@ impl WrongUnit {
     }
 }
 
-/// Root mean square of a simulated signal over that of the measured one.
+/// Median size of a simulated signal over that of the measured one. A simulation that starts with wrong pressures jumps at first; a
+/// median does not see that.
 fn ratio(comparison: &Comparison, name: &str) -> Option<f64> {
     let (measured, simulated) = (comparison.measured.signal(name)?, comparison.simulated.signal(name)?);
     let pairs = measured.iter().zip(simulated).filter(|(m, s)| m.is_finite() && s.is_finite());
-    let (of_measured, of_simulated) = pairs.fold((0.0, 0.0), |(a, b), (m, s)| (a + m * m, b + s * s));
-    let ratio = (of_simulated / of_measured).sqrt();
+    let (mut measured, mut simulated): (Vec<f64>, Vec<f64>) = pairs.map(|(m, s)| (m.abs(), s.abs())).unzip();
+    let ratio = middle(&mut simulated)? / middle(&mut measured)?;
     (ratio.is_finite() && ratio > 0.0).then_some(ratio)
+}
+
+fn middle(values: &mut [f64]) -> Option<f64> {
+    let place = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
 #[cfg(test)]
